@@ -67,7 +67,7 @@ std::optional<bool> Cases::attempt() {
     if (!case_.border_solved) {
         const auto u = value(claim_.u), v = u ? value(claim_.v) : std::nullopt;
         if (!v) return {};
-        const Sum gap = add(*u, *v, -1);
+        const Sum gap = cleared(add(*u, *v, -1));
         if (const auto c = as_constant(gap); c && std::fabs(*c) > 1e-9) return true; // nowhere
         if (!solve(gap)) return {};
         follow_roots(case_);
@@ -127,7 +127,7 @@ std::optional<bool> Cases::vectors_agree(int sides) {
 }
 
 bool Cases::are_equal(const Sum &a, const Sum &b) {
-    const Sum gap = add(a, b, -1);
+    const Sum gap = cleared(add(a, b, -1));
     if (is_small(gap, a) || is_small(gap, b)) return true;
     if (impossible(case_, {gap, true}) && impossible(case_, {add({}, gap, -1), true})) return true;
     return split_sizes_ && are_equal_on_line(a, b);
@@ -192,21 +192,32 @@ Sum Cases::with_square(const Sum &sum, std::uint32_t r, const Sum &square) {
 
 bool Cases::impossible(const Case &c, const Inequality &more) {
     std::vector<Inequality> all;
-    std::vector<Product> positive;
     for (const Sum &sum : c.at_least_0) all.push_back({reduced(sum, c), false});
     if (!more.sum.empty()) all.push_back({reduced(more.sum, c), more.strict});
     for (const auto &[a, sum] : c.solved) // an atom that is none any more keeps its sign
         if (atoms_[a].never_negative) all.push_back({reduced(sum, c), false});
+    if (by_inverses_)
+        for (Inequality &row : all) row.sum = cleared(row.sum);
+    const auto contradicted = [&] {
+        std::vector<Product> positive;
+        for (const Inequality &row : all)
+            for (const auto &[m, k] : row.sum)
+                if (!m.empty() && never_negative(m)) positive.push_back(m);
+        std::sort(positive.begin(), positive.end());
+        positive.erase(std::unique(positive.begin(), positive.end()), positive.end());
+        std::size_t steps = 0;
+        const bool out = contradict(all, positive, steps);
+        looked_.take(steps);
+        return out;
+    };
+    if (contradicted()) return true;
+    const std::size_t rows = all.size();
     add_products(all);
-    for (const Inequality &row : all)
-        for (const auto &[m, k] : row.sum)
-            if (!m.empty() && never_negative(m)) positive.push_back(m);
-    std::sort(positive.begin(), positive.end());
-    positive.erase(std::unique(positive.begin(), positive.end()), positive.end());
-    std::size_t steps = 0;
-    const bool out = contradict(std::move(all), positive, steps);
-    looked_.take(steps);
-    return out;
+    if (all.size() > rows && contradicted()) return true;
+    if (!by_inverses_) return false;
+    all.resize(rows);
+    add_pairs(all);
+    return all.size() > rows && contradicted();
 }
 
 bool Cases::never_negative(const Product &m) const {
@@ -220,36 +231,45 @@ bool Cases::never_negative(const Product &m) const {
 
 bool Cases::solve_equality(Case &c) {
     std::vector<Sum> rows;
-    for (const Sum &sum : c.at_least_0) rows.push_back(reduced(sum, c));
-    for (std::size_t i = 0; i < rows.size(); ++i)
+    for (const Sum &sum : c.at_least_0) rows.push_back(cleared(reduced(sum, c)));
+    for (const auto &[a, sum] : c.solved)
+        if (atoms_[a].never_negative) rows.push_back(cleared(reduced(sum, c)));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (rows[i].empty()) continue;
+        if (const auto &[m, by] = *rows[i].begin();
+            rows[i].size() == 1 && m.size() == 1 && by < 0 && never_negative(m)) {
+            c.solved.emplace_back(m[0], Sum{}); // -a >= 0 and a >= 0
+            return true;
+        }
         for (std::size_t k = 0; k < i; ++k) {
             if (as_constant(rows[i]) || as_constant(rows[k])) continue;
             const auto &[m, by] = *rows[i].begin();
             const auto other = rows[k].find(m);
             if (other == rows[k].end() || other->second * by > 0) continue;
             if (!is_small(add(rows[i], rows[k], -by / other->second), rows[i])) continue;
-            if (auto found = solved_for_atom(rows[i])) {
+            if (auto found = solved_for_moving(rows[i])) {
                 c.solved.push_back(std::move(*found));
                 return true;
             }
         }
+    }
     return false;
 }
 
 bool Cases::solve(const Sum &gap) {
-    if (auto found = solved_for_atom(gap)) {
+    if (auto found = solved_for_moving(gap)) {
         case_.solved.push_back(std::move(*found));
         return true;
     }
-    if (solve_along_line(gap)) return true;
-    if (const auto found = solved_for_square(gap)) {
-        const Sum above = add(atom(found->atom), found->middle, -1);
+    if (solve_along_line(gap) || (by_inverses_ && solve_by_inverse(gap))) return true;
+    if (const auto square = solved_for_square(gap)) {
+        const Sum above = add(atom(square->atom), square->middle, -1);
         const auto w = way(claim_.choice, Squares, {{above}, {add({}, above, -1)}});
         if (!w) return false;
-        const auto number = as_constant(found->square);
+        const auto number = as_constant(square->square);
         const Sum root = number ? constant(std::sqrt(std::max(*number, 0.0)))
-                                : atom(root_atom(found->square, true));
-        case_.solved.emplace_back(found->atom, add(found->middle, root, *w == 0 ? 1 : -1));
+                                : atom(root_atom(square->square, true));
+        case_.solved.emplace_back(square->atom, add(square->middle, root, *w == 0 ? 1 : -1));
         return true;
     }
     const Sum less = add({}, gap, -1);
@@ -323,7 +343,7 @@ bool is_count(const Graph &graph, NodeId root) {
 }
 
 bool is_proved_alike(Graph &graph, const Claim &claim, Looked &looked) {
-    Cases attempt(graph, false, looked);
+    Cases attempt(graph, {}, looked);
     const bool holds = attempt.hold_alike(claim);
     looked.cases += attempt.count();
     return holds;
@@ -332,13 +352,18 @@ bool is_proved_alike(Graph &graph, const Claim &claim, Looked &looked) {
 bool is_proved(Graph &graph, const Claim &claim, Looked &looked) {
     const bool near = looked.near;
     const auto along = [&](std::optional<Axes> axes) {
-        return std::ranges::any_of(std::array{false, true}, [&](bool split_sizes) {
-            looked.near = near;
-            Cases attempt(graph, split_sizes, looked, axes);
-            const bool holds = attempt.hold(claim);
-            looked.cases += attempt.count();
-            return holds;
-        });
+        bool met_held = false;
+        for (const bool inverses : {false, true})
+            for (const bool sizes : {false, true}) {
+                if (inverses && !met_held) return false;
+                looked.near = near;
+                Cases attempt(graph, {.sizes = sizes, .inverses = inverses}, looked, axes);
+                const bool holds = attempt.hold(claim);
+                looked.cases += attempt.count();
+                met_held = met_held || attempt.met_held();
+                if (holds) return true;
+            }
+        return false;
     };
     if (along({})) return true;
     if (const auto axes = axes_of(graph, claim); axes && along(axes)) return true;

@@ -29,6 +29,12 @@ bool Cases::is_held(const Sum &sum) const {
     });
 }
 
+std::optional<std::pair<std::uint32_t, Sum>> Cases::solved_for_moving(const Sum &sum) const {
+    if (auto found = solved_for_atom(sum, [&](std::uint32_t a) { return !atoms_[a].held; }))
+        return found;
+    return by_inverses_ ? std::nullopt : solved_for_atom(sum);
+}
+
 std::optional<Sum> Cases::quotient(const Sum &a, const Sum &b) {
     if (b.size() != 1 || b.begin()->first.size() != 1) return {};
     const std::uint32_t d = b.begin()->first[0];
@@ -104,20 +110,37 @@ bool Cases::solve_along_line(const Sum &gap) {
     return false;
 }
 
-void Cases::add_products(std::vector<Inequality> &rows) const {
-    constexpr std::size_t most = 40;
+std::vector<std::uint32_t> Cases::add_ranges(std::vector<Inequality> &rows) const {
     std::vector<std::uint32_t> held; // that stand in a product with something
+    std::vector<Product> powers;     // products of what is held
+    for (const Inequality &row : rows)
+        for (const auto &[m, c] : row.sum)
+            if (by_inverses_ && m.size() > 1 && is_held(Sum{{m, c}})) powers.push_back(m);
+    std::ranges::sort(powers);
+    powers.erase(std::unique(powers.begin(), powers.end()), powers.end());
     for (const Inequality &row : rows)
         for (const auto &[m, c] : row.sum)
             for (std::uint32_t a : m)
-                if (m.size() > 1 && atoms_[a].held && atoms_[a].range) held.push_back(a);
+                if ((m.size() > 1 || by_inverses_) && atoms_[a].held && atoms_[a].range)
+                    held.push_back(a);
     std::ranges::sort(held);
     held.erase(std::unique(held.begin(), held.end()), held.end());
-    const std::size_t known = rows.size();
     for (std::uint32_t a : held) {
         rows.push_back({add(atom(a), constant(atoms_[a].range->lo), -1), false});
         rows.push_back({add(constant(atoms_[a].range->hi), atom(a), -1), false});
     }
+    for (const Product &m : powers)
+        if (const auto range = range_of(Sum{{m, 1.0}}, atoms_)) {
+            rows.push_back({add(Sum{{m, 1.0}}, constant(range->lo), -1), false});
+            rows.push_back({add(constant(range->hi), Sum{{m, 1.0}}, -1), false});
+        }
+    return held;
+}
+
+void Cases::add_products(std::vector<Inequality> &rows) const {
+    constexpr std::size_t most = 40;
+    const std::size_t known = rows.size();
+    const std::vector<std::uint32_t> held = add_ranges(rows);
     for (std::size_t i = 0; i < known; ++i) {
         const Sum sum = rows[i].sum; // a copy: rows are added
         if (sum.size() > 3 || sum.empty() || sum.begin()->first.size() != 1) continue;

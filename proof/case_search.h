@@ -48,17 +48,24 @@ std::optional<Axes> axes_of(const Graph &graph, const Claim &claim);
 
 class Cases {
   public:
-    Cases(Graph &graph, bool split_sizes, Looked &looked, std::optional<Axes> axes = {})
-        : graph_(graph), split_sizes_(split_sizes), axes_(axes), looked_(looked) {}
+    // What a search tries besides: `sizes`, |x| of an atom by cases, which else is an atom; `inverses`,
+    // quotients by what is held as products with an inverse.
+    struct Tries {
+        bool sizes = false, inverses = false;
+    };
+    Cases(Graph &graph, Tries tries, Looked &looked, std::optional<Axes> axes = {})
+        : graph_(graph), split_sizes_(tries.sizes), by_inverses_(tries.inverses), axes_(axes),
+          looked_(looked) {}
 
     bool hold(const Claim &claim);
     // By what the sides are to each other alone (relation); no number is compared.
     bool hold_alike(const Claim &claim);
     int count() const { return count_; }
+    bool met_held() const { return met_held_; } // a number that is the same for all points
 
   private:
     Graph &graph_;
-    const bool split_sizes_; // |x| of an atom by cases, too; else it is an atom
+    const bool split_sizes_, by_inverses_; // as of Tries
     const std::optional<Axes> axes_;
     Looked &looked_;
     Claim claim_;
@@ -74,6 +81,7 @@ class Cases {
     std::map<NodeId, Relation> relations_;
     int count_ = 0, depth_ = 0, squares_ = 0, roots_ = 0, lines_ = 0;
     bool alike_ = false; // as of hold_alike
+    bool met_held_ = false;
     bool splits_ = true; // else what a case leaves open is asked of its inequalities
 
     bool hold(const Case &given, int depth);
@@ -102,9 +110,12 @@ class Cases {
     static std::optional<Interval> range_of(const Sum &sum, const std::vector<Atom> &atoms);
 
     bool impossible(const Case &c, const Inequality &more);
-    // The ranges of what is held and stands in products, and what follows of rows of degree 1,
-    // `t >= 0`: (a - lo) t >= 0.
+    // The ranges of what is held and stands in products; what it is of.
+    std::vector<std::uint32_t> add_ranges(std::vector<Inequality> &rows) const;
+    // These, and what follows of rows of degree 1, `t >= 0`: (a - lo) t >= 0.
     void add_products(std::vector<Inequality> &rows) const;
+    // The products of two rows of degree 1; of a root that is at least b >= 0, the squares.
+    void add_pairs(std::vector<Inequality> &rows);
     bool never_negative(const Product &m) const;
 
     // Of s >= 0 and -s >= 0: s = 0, if that can be solved.
@@ -113,11 +124,30 @@ class Cases {
     // gap = 0: for an atom that stands in one term alone, or in a square, by either of its roots; else
     // as two inequalities. False where the case has to be split first.
     bool solve(const Sum &gap);
+    // For an atom that is not held, where there is one.
+    std::optional<std::pair<std::uint32_t, Sum>> solved_for_moving(const Sum &sum) const;
     // A u + B v + C = 0 with A, B, C of what is held: u = u0 - B t and v = v0 + A t.
     bool solve_along_line(const Sum &gap);
     bool is_held(const Sum &sum) const; // of what is held alone
     // a / b, both held, b a number times an atom that is never 0.
     std::optional<Sum> quotient(const Sum &a, const Sum &b);
+
+    // Of what is held: its range, which is halved until a sign is seen; 1, -1, or 0 where none is.
+    std::optional<Interval> halved_range_of(const Sum &sum) const;
+    int held_sign(const Sum &sum) const;
+    // 1 / b where b is held and never 0, as a product of inverses.
+    std::optional<Sum> inverse(const Sum &b);
+    // A sum with the sign of this one, 0 where it is: without inverses, without factors above 0.
+    Sum cleared(const Sum &sum);
+    // Without a factor that all of it has, held and never 0.
+    Sum without_held_factor(const Sum &sum) const;
+    // The root of a square, also where it is one with r*r for x*x + y*y.
+    std::optional<Sum> root_by_roots(const Sum &square) const;
+    bool is_square(const Sum &sum); // times a number above 0, which is held
+    // gap = 0 for an atom u that is multiplied by what is held and never 0.
+    bool solve_by_inverse(const Sum &gap);
+    // A number of which the square is `below`, a sum of products with one inverse.
+    std::optional<Sum> root_over_inverses(const Sum &below);
     std::optional<std::pair<Product, Sum>> in_place_of_pair(const Product &m) const;
     // Roots of what has been solved since, as roots of what it is now.
     void follow_roots(Case &c);

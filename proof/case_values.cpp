@@ -47,6 +47,7 @@ Sum Cases::leaf(NodeId id, int i) {
     const auto k = static_cast<std::size_t>(i);
     const ir::Graph::Reads read = graph_.reads(id);
     about.held = !read.point && !read.free_vars;
+    met_held_ = met_held_ || about.held;
     if (node.op == Op::Point) about.range = Interval(-near_enough, near_enough);
     if (node.op == Op::Param && looked_.ranges)
         about.range = looked_.ranges->params[node.payload][k];
@@ -138,6 +139,8 @@ std::optional<Sum> Cases::size_of(NodeId id, int i, const Sum &x) {
             return size ? times(*size, Sum{{kept, 1.0}}) : std::nullopt;
         }
     }
+    if (const int sign = by_inverses_ ? held_sign(x) : 0; sign != 0)
+        return sign > 0 ? x : add({}, x, -1);
     const auto w = way(id, i, {{x}, {add({}, x, -1)}});
     if (!w) return {};
     return *w == 0 ? x : add({}, x, -1);
@@ -154,8 +157,9 @@ std::optional<Sum> Cases::root(NodeId at, NodeId below, int i) {
                    b = a ? root(graph_.arg(below, 1), graph_.arg(below, 1), i) : std::nullopt;
         if (!b) return {};
         const auto x = times(*a, *a), y = x ? times(*b, *b) : std::nullopt;
-        if (y && is_sum_of_squares(add(*y, *x, -1))) return node.op == Op::Min ? a : b;
-        if (y && is_sum_of_squares(add(*x, *y, -1))) return node.op == Op::Min ? b : a;
+        const Sum gap = y ? add(*y, *x, -1) : Sum{}, less = add({}, gap, -1);
+        if (y && (is_sum_of_squares(gap) || is_square(gap))) return node.op == Op::Min ? a : b;
+        if (y && (is_sum_of_squares(less) || is_square(less))) return node.op == Op::Min ? b : a;
         return lesser(below, Roots + i, *a, *b, node.op == Op::Min);
     }
     if (node.op == Op::Swizzle)
@@ -173,6 +177,8 @@ std::optional<Sum> Cases::root_of(NodeId at, const Sum &x, int i, bool of_square
     if (const auto c = as_constant(x)) return constant(*c > 0 ? std::sqrt(*c) : 0);
     const Sum sum = squares_known(x);
     if (const auto s = root_of_square(sum)) return size_of(at, Lengths + i, *s);
+    if (const auto s = by_inverses_ ? root_over_inverses(sum) : std::nullopt)
+        return size_of(at, Lengths + i, *s);
     for (std::uint32_t a = 0; a < atoms_.size(); ++a)
         if (atoms_[a].square)
             if (const double times = multiple_of(sum, *atoms_[a].square); times > 0)
@@ -226,8 +232,10 @@ Sum Cases::squares_known(const Sum &x) const {
 }
 
 std::optional<Sum> Cases::lesser(NodeId id, int i, const Sum &a, const Sum &b, bool least) {
-    const Sum gap = add(b, a, -1); // b - a
+    const Sum gap = cleared(add(b, a, -1)); // b - a
     if (const auto c = as_constant(gap)) return (*c >= 0) == least ? a : b;
+    if (const int sign = by_inverses_ ? held_sign(gap) : 0; sign != 0)
+        return (sign > 0) == least ? a : b;
     const Sum less = add({}, gap, -1);
     if (is_sum_of_squares(gap)) return least ? a : b;
     if (is_sum_of_squares(less)) return least ? b : a;
@@ -274,6 +282,21 @@ std::optional<std::pair<Product, Sum>> Cases::in_place_of_pair(const Product &m)
     for (std::size_t i = 0; i < m.size(); ++i) {
         if (i + 1 < m.size() && m[i] == m[i + 1] && atoms_[m[i]].square)
             return std::pair(without(i, i + 1), *atoms_[m[i]].square);
+        if (const auto &b = atoms_[m[i]].inverse_of) { // 1 = lead / b + the rest of b / b
+            const Product &lead = b->begin()->first;
+            const Product others = without(i, i);
+            if (!std::ranges::includes(others, lead)) continue;
+            Product rest;
+            std::ranges::set_difference(others, lead, std::back_inserter(rest));
+            Sum is = constant(1);
+            for (const auto &[k, c] : *b) {
+                if (k == lead) continue;
+                Product product = k;
+                product.insert(std::ranges::upper_bound(product, m[i]), m[i]);
+                is = add(is, Sum{{product, -c}});
+            }
+            return std::pair(rest, is);
+        }
         if (!atoms_[m[i]].quotient) continue;
         const auto &[d, of] = *atoms_[m[i]].quotient;
         if (const auto at = std::ranges::find(m, d); at != m.end())
@@ -345,7 +368,9 @@ std::optional<Sum> Cases::component(NodeId id, int i, Op op, const Sum &a, const
     if (op == Op::Abs) return size_of(id, Sizes + i, a);
     if (op == Op::Div) {
         if (const auto d = as_constant(b); d && *d != 0) return add({}, a, 1 / *d);
-        if (const auto q = quotient(a, b)) return q;
+        if (!by_inverses_)
+            if (const auto q = quotient(a, b)) return q;
+        if (const auto over = by_inverses_ ? inverse(b) : std::nullopt) return times(a, *over);
         return unknown(id, i);
     }
     if (op == Op::Clamp) { // min(max(x, lo), hi)
@@ -371,6 +396,7 @@ std::optional<Sum> Cases::component(NodeId id, int i, Op op, const Sum &a, const
     }
     // A sign of what is 0 on all of the border may turn with it, so either side is looked at.
     if (const auto d = as_constant(a); d && *d != 0) return constant(*d > 0 ? 1 : -1);
+    if (const int sign = by_inverses_ ? held_sign(a) : 0; sign != 0) return constant(sign);
     const Sum less = add({}, a, -1);
     const auto w = way(id, i, {{a}, {less}, {a, less}});
     return w ? std::optional(constant(*w == 0 ? 1 : *w == 1 ? -1 : 0)) : std::nullopt;

@@ -126,7 +126,7 @@ std::optional<Sum> root_of_square(const Sum &a) {
     return {};
 }
 
-std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding) {
+std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding, double *least) {
     std::vector<Sum> roots;
     Sum rest = a, sizes; // sizes: of all that was added up to each coefficient
     for (const auto &[m, c] : a) sizes[m] = std::fabs(c);
@@ -137,7 +137,11 @@ std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding) {
         std::erase_if(rest, [&](const auto &term) { return is_nothing(term.first, term.second); });
         if (rest.empty()) return roots;
         const Product lead = rest.begin()->first;
-        if (lead.empty()) return rest.begin()->second >= 0 ? std::optional(roots) : std::nullopt;
+        if (lead.empty()) {
+            const double number = rest.begin()->second;
+            if (least) *least = number;
+            return number >= 0 ? std::optional(roots) : std::nullopt;
+        }
         if (lead.size() > 2) return {};
         // Some atom of the leading term has to stand as a square.
         const std::uint32_t x = lead[0];
@@ -166,11 +170,12 @@ std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding) {
 
 bool is_sum_of_squares(const Sum &a) { return squares_in(a, granted).has_value(); }
 
-std::optional<std::pair<std::uint32_t, Sum>> solved_for_atom(const Sum &sum) {
+std::optional<std::pair<std::uint32_t, Sum>>
+solved_for_atom(const Sum &sum, const std::function<bool(std::uint32_t)> &may) {
     for (const auto &[m, c] : sum) {
         if (m.size() != 1 || is_small(Sum{{m, c}}, sum)) continue;
         const std::uint32_t a = m[0];
-        bool elsewhere = false;
+        bool elsewhere = may && !may(a);
         for (const auto &[k, x] : sum)
             elsewhere = elsewhere || (k != m && std::find(k.begin(), k.end(), a) != k.end());
         if (elsewhere) continue;

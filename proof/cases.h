@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -33,11 +34,13 @@ std::optional<Sum> root_of_square(const Sum &a);
 // with a number above 0 besides, so that it is never below 0 (Cholesky's way). What is at most
 // `rounding` of all that was added up to it is nothing: where a sum is 0 its squares are, but a root turns
 // an error e into sqrt(e).
-std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding);
+// That number goes to `least`.
+std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding, double *least = nullptr);
 bool is_sum_of_squares(const Sum &a);
 
-// An atom that stands in one term alone, and what it is where sum = 0.
-std::optional<std::pair<std::uint32_t, Sum>> solved_for_atom(const Sum &sum);
+// An atom that stands in one term alone and may be solved for, and what it is where sum = 0.
+std::optional<std::pair<std::uint32_t, Sum>>
+solved_for_atom(const Sum &sum, const std::function<bool(std::uint32_t)> &may = {});
 // An atom a of which sum = 0 says (a - middle)^2 = square, a sum of squares.
 struct Squared {
     std::uint32_t atom = 0;

@@ -19,6 +19,7 @@ struct LineAtom {
     bool held = false;                 // the same for all points: a param, the time, made of these
     // Of a / d, where d is an atom: d, and a.
     std::optional<std::pair<std::uint32_t, Sum>> quotient;
+    std::optional<Sum> inverse_of; // of 1 / b: b, of which the first number is 1, never 0
 };
 
 // Do a and b differ nowhere where no row is below 0, by more than `granted` of their terms? All

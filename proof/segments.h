@@ -1,5 +1,6 @@
 // Vectors moved along a direction by how far they lie along it: the way to the nearest point of a
-// segment, v - b clamp(v.b / b.b, 0, 1), as capsules have it, and folds, v - 2 n min(v.n, 0).
+// segment, v - b clamp(v.b / b.b, 0, 1), as capsules have it, folds, v - 2 n min(v.n, 0), and what is
+// moved by component, v - b [clamp(v_x / b_x, 0, 1), 1].
 #pragma once
 
 #include "ir/graph.h"
