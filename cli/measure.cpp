@@ -121,9 +121,9 @@ Json json_of(const v1::Measures &of, const MeasureCommand &command) {
 }
 
 // What is measured one after the other, on one bar.
-class Work {
+class Measuring {
   public:
-    Work(const MeasureCommand &command, std::size_t pieces, Terminal &terminal)
+    Measuring(const MeasureCommand &command, std::size_t pieces, Terminal &terminal)
         : command_(command), pieces_(pieces), terminal_(terminal) {}
     std::function<bool(double)> next() {
         return [this, before = begun_++](double share) {
@@ -224,7 +224,7 @@ Exit run(const MeasureCommand &command, Terminal &terminal) {
     }
 
     const Interrupts interrupts;
-    Work work(command, subjects.size() + pairs.size(), terminal);
+    Measuring work(command, subjects.size() + pairs.size(), terminal);
     const auto heed_interrupts = [&] {
         if (!Interrupts::noticed()) return;
         terminal.finish_progress();

@@ -59,7 +59,7 @@ void ask(Asked &asked, const Mesh &mesh, std::size_t corner, float share) {
 }
 
 // What a surface's properties are over the places where it was met.
-struct Seen {
+struct SeenSurface {
     std::size_t count = 0;
     std::array<double, 10> sums{}, least{}, most{};
     void add(const Look &look) {
@@ -94,7 +94,7 @@ std::string hexadecimal(const Point &color) {
                        srgb_byte(color[2]));
 }
 
-Material material_of(const Seen &seen, const std::string &name, bool unpainted) {
+Material material_of(const SeenSurface &seen, const std::string &name, bool unpainted) {
     Material made;
     for (std::size_t i = 0; i < 3; ++i) {
         made.diffuse[i] = seen.mean(i);
@@ -187,7 +187,7 @@ Appearance appearance_of(const ir::Scene &scene, double time, const Mesh &mesh, 
     // nearer to its middle.
     made.corners.resize(count);
     std::vector<std::size_t> open;
-    std::vector<Seen> seen(scene.surfaces.size());
+    std::vector<SeenSurface> seen(scene.surfaces.size());
     const auto take = [&](std::size_t corner, const Look &look) {
         made.corners[corner / 3][corner % 3] = clamped(look.diffuse);
         seen[static_cast<std::size_t>(look.surface)].add(look);

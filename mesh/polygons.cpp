@@ -11,24 +11,24 @@ using Triangle = std::array<std::uint32_t, 3>;
 constexpr double slack = 1e-9; // of shares; what is nearer to a border counts as beyond it
 
 // A point seen along an edge: how far across in both axes, and how far along.
-struct Seen {
+struct SeenAlong {
     double b = 0, c = 0, a = 0;
 };
-double cross(const Seen &x, const Seen &y) { return x.b * y.c - x.c * y.b; }
+double cross(const SeenAlong &x, const SeenAlong &y) { return x.b * y.c - x.c * y.b; }
 
 struct Edge {
     std::size_t a = 0, b = 0, c = 0; // axes
     double low = 0, high = 0, at_b = 0, at_c = 0;
-    Seen seen(const Point &p) const { return {p[b] - at_b, p[c] - at_c, p[a]}; }
+    SeenAlong seen(const Point &p) const { return {p[b] - at_b, p[c] - at_c, p[a]}; }
     double share(double along) const { return (along - low) / (high - low); }
 };
 
 // Whether the way from x to y goes through the triangle of the edge and z, or through the edge.
-bool passes(const Edge &edge, const Seen &x, const Seen &y, const Seen &z) {
+bool passes(const Edge &edge, const SeenAlong &x, const SeenAlong &y, const SeenAlong &z) {
     const double from = cross(x, z), to = cross(y, z);
     if (!(from * to < 0)) return false;
     const double t = from / (from - to);
-    const Seen at{x.b + t * (y.b - x.b), x.c + t * (y.c - x.c), x.a + t * (y.a - x.a)};
+    const SeenAlong at{x.b + t * (y.b - x.b), x.c + t * (y.c - x.c), x.a + t * (y.a - x.a)};
     const double r = (at.b * z.b + at.c * z.c) / (z.b * z.b + z.c * z.c);
     if (!(t > slack && t < 1 - slack && r >= 0 && r < 1 - slack)) return false;
     const double low = edge.low + r * (z.a - edge.low), high = edge.high + r * (z.a - edge.high);
@@ -37,7 +37,7 @@ bool passes(const Edge &edge, const Seen &x, const Seen &y, const Seen &z) {
 }
 
 // Whether the edge goes through a triangle, or through its side between x and y.
-bool pierces(const Edge &edge, const Seen &x, const Seen &y, const Seen &z) {
+bool pierces(const Edge &edge, const SeenAlong &x, const SeenAlong &y, const SeenAlong &z) {
     const double whole = cross(x, y) + cross(y, z) + cross(z, x);
     if (whole == 0) return false;
     const double wx = cross(y, z) / whole, wy = cross(z, x) / whole, wz = cross(x, y) / whole;
@@ -80,12 +80,12 @@ struct Polygons {
     // Two triangles in place of a quadrilateral, along the diagonal that bends it less; false where
     // neither stays among the four cells' own parts.
     bool two(const Edge &edge, const std::array<std::uint32_t, 4> &v) {
-        std::array<Seen, 4> s;
+        std::array<SeenAlong, 4> s;
         for (std::size_t k = 0; k < 4; ++k) s[k] = edge.seen(at(v[k]));
         double best = -2;
         std::size_t from = 4;
         for (std::size_t k = 0; k < 2; ++k) { // the diagonal from k to k + 2
-            const Seen &x = s[k], &y = s[k + 1], &z = s[k + 2], &w = s[(k + 3) % 4];
+            const SeenAlong &x = s[k], &y = s[k + 1], &z = s[k + 2], &w = s[(k + 3) % 4];
             const bool by_y = passes(edge, x, z, y) && pierces(edge, z, x, w);
             const bool by_w = passes(edge, x, z, w) && pierces(edge, x, z, y);
             if (!by_y && !by_w) continue;

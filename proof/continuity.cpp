@@ -180,11 +180,11 @@ std::optional<NodeId> difference(Graph &graph, NodeId a, NodeId b) {
 
 namespace {
 
-NodeId component_of(Graph &graph, NodeId vector, int i, int &left) {
+NodeId component_within(Graph &graph, NodeId vector, int i, int &left) {
     const ir::Node node = graph[vector];
     if (node.op == Op::Swizzle)
-        return component_of(graph, graph.arg(vector, 0), ir::swizzle_component(node.payload, i),
-                            left);
+        return component_within(graph, graph.arg(vector, 0), ir::swizzle_component(node.payload, i),
+                                left);
     if (node.op == Op::Splat) return graph.arg(vector, 0);
     if (ir::is_vector(node.type) && node.count > 0 && left > 0 &&
         ir::info(node.op).rule == ir::TypeRule::Same && node.op != Op::Cross &&
@@ -192,7 +192,7 @@ NodeId component_of(Graph &graph, NodeId vector, int i, int &left) {
         --left;
         std::vector<NodeId> parts;
         for (int k = 0; k < int(node.count); ++k)
-            parts.push_back(component_of(graph, graph.arg(vector, k), i, left));
+            parts.push_back(component_within(graph, graph.arg(vector, k), i, left));
         return graph.make(node.op, ir::Type::Float, parts, node.payload);
     }
     return graph.component(vector, i);
@@ -203,7 +203,7 @@ NodeId component_of(Graph &graph, NodeId vector, int i, int &left) {
 NodeId component_of(Graph &graph, NodeId vector, int i) {
     int left =
         1000; // vectors that are written so: one may stand in both parts of another, again and again
-    return component_of(graph, vector, i, left);
+    return component_within(graph, vector, i, left);
 }
 
 NodeId in_one_form(Graph &graph, NodeId scalar, Work *work) {

@@ -17,23 +17,23 @@ namespace {
 using ir::Graph;
 
 constexpr std::size_t max_nodes_of_mean = 96, max_pairs = 6, max_instructions = 20'000,
-                      max_parts = 32;
+                      max_parts_of_mean = 32;
 constexpr double max_steepness = 1.1; // 1 + 2e
 constexpr ir::OpSet opaque{Op::Point, Op::Loop, Op::LoopResult, Op::Call, Op::Cached};
 constexpr double rounding = 1e-9; // of the bound on a weight
 
 // Two numbers, and which way b moves as a does.
-struct Moved {
+struct MovedPair {
     NodeId a, b;
     double other = 1;
-    friend bool operator==(const Moved &, const Moved &) = default;
+    friend bool operator==(const MovedPair &, const MovedPair &) = default;
 };
 
 // How far a node moves where a moves by 1 and b by `other`, whatever a and b are; nothing where that
 // is not one number.
 class Moves {
   public:
-    Moves(const Graph &graph, const Moved &moved) : graph_(graph) {
+    Moves(const Graph &graph, const MovedPair &moved) : graph_(graph) {
         known_[moved.a] = 1;
         known_[moved.b] = moved.other;
     }
@@ -81,8 +81,8 @@ class Moves {
 
 // Pairs of numbers that stand together in a least, a greatest, a sum or a comparison, from the top
 // of the expression down; those of the top itself say nothing new.
-std::vector<Moved> pairs_in(const Graph &graph, NodeId root) {
-    std::vector<Moved> out;
+std::vector<MovedPair> pairs_in(const Graph &graph, NodeId root) {
+    std::vector<MovedPair> out;
     std::vector<NodeId> level{root};
     std::unordered_set<NodeId> seen{root};
     for (std::size_t at = 0; at < level.size() && level.size() < max_nodes_of_mean; ++at) {
@@ -96,7 +96,7 @@ std::vector<Moved> pairs_in(const Graph &graph, NodeId root) {
                 return graph[x].type == ir::Type::Float &&
                        (graph.reads(x).point || graph.reads(x).free_vars);
             };
-            const Moved moved{a, b, op == Op::Add ? -1.0 : 1.0};
+            const MovedPair moved{a, b, op == Op::Add ? -1.0 : 1.0};
             if (a != b && may_be(a) && may_be(b) && std::ranges::find(out, moved) == out.end())
                 out.push_back(moved);
             if (out.size() == max_pairs) return out;
@@ -127,7 +127,7 @@ double steepest(Flattening &context, NodeId twice) {
     const ir::Content content = ir::content_of(context.graph, twice);
     std::vector<Ranges> parts{*context.ranges};
     std::vector<double> steep{steepness(context, parts[0], twice)};
-    while (parts.size() < max_parts) {
+    while (parts.size() < max_parts_of_mean) {
         const auto worst = std::size_t(std::ranges::max_element(steep) - steep.begin());
         if (steep[worst] <= 1 + rounding) break;
         std::optional<std::uint32_t> widest;
@@ -148,7 +148,8 @@ double steepest(Flattening &context, NodeId twice) {
 }
 
 // How far beyond 0..1 the weights may lie; nothing where that is too far.
-std::optional<double> beyond(Flattening &context, NodeId scalar, const Moved &moved, double by) {
+std::optional<double> beyond(Flattening &context, NodeId scalar, const MovedPair &moved,
+                             double by) {
     Graph &graph = context.graph;
     const NodeId d = graph.component(graph.point(), 0);
     const NodeId g = ir::substitute(graph, scalar, {{moved.a, d}, {moved.b, graph.number(0)}});
@@ -166,7 +167,7 @@ std::optional<Mean> mean_of(Flattening &context, NodeId scalar) {
     if (const auto known = context.means.find(scalar); known != context.means.end())
         return known->second;
     std::optional<Mean> out;
-    for (const Moved &moved : pairs_in(context.graph, scalar)) {
+    for (const MovedPair &moved : pairs_in(context.graph, scalar)) {
         const auto by = Moves(context.graph, moved).of(scalar);
         if (!by || *by == 0) continue;
         if (const auto more = beyond(context, scalar, moved, *by)) {

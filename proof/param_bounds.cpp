@@ -15,9 +15,9 @@ namespace {
 constexpr std::size_t most_params = 4;
 constexpr int pieces = 8; // of a range
 constexpr int most_halvings = 3;
-constexpr double pays_from = 1.25;  // times the present bound, from where on a formula is
-constexpr double near_enough = 1.1; // a line this near the bound in its middle is not halved
-constexpr double above = 1 + 1e-5;  // what single precision may lose of the formula
+constexpr double pays_from = 1.25;     // times the present bound, from where on a formula is
+constexpr double near_enough = 1.1;    // a line this near the bound in its middle is not halved
+constexpr double allowance = 1 + 1e-5; // what single precision may lose of the formula
 
 // The params of one number that a field reads: each with its nodes.
 std::unordered_map<std::uint32_t, std::vector<NodeId>> params_of(const ir::Graph &graph,
@@ -117,7 +117,7 @@ class ParamBounds {
         return std::isfinite(whole) && whole > pays_from * present + 0.05;
     }
     double bound(const Ranges &ranges) {
-        return bound_field(context_, ranges, field_, domain_, budget_).lipschitz * above;
+        return bound_field(context_, ranges, field_, domain_, budget_).lipschitz * allowance;
     }
     double at(std::uint32_t index, Interval values) {
         Ranges ranges = ranges_;

@@ -138,7 +138,7 @@ Moment moment_of(const ir::Scene &scene, const Inputs &all, Which which, Dice &d
 }
 
 // What is seen where rays arrive. Each ray counts once, with its largest error near a surface.
-struct Seen {
+struct SeenByRays {
     double error = 0;       // the largest number; 0 where fewer than three rays are wrong
     bool useless = false;   // most rays are wrong, and by a good part of the scene
     bool no_number = false; // a quarter of the rays meet an infinity that is not meant
@@ -183,8 +183,8 @@ std::optional<double> error_of_ray(Trials &trials, const Asked &asked, const Mom
     return error;
 }
 
-Seen look(const ir::Scene &scene, const Asked &asked, const Inputs &inputs, double scene_size,
-          std::size_t work) {
+SeenByRays look(const ir::Scene &scene, const Asked &asked, const Inputs &inputs, double scene_size,
+                std::size_t work) {
     constexpr int most_rays = 240, enough = 96, few = 6;
     Trials trials(scene, scene.distance);
     Dice dice{0x0f10a7};
@@ -194,7 +194,7 @@ Seen look(const ir::Scene &scene, const Asked &asked, const Inputs &inputs, doub
         if (const auto e = error_of_ray(trials, asked, now, scene_size, ray % 2 == 1, dice))
             errors.push_back(*e);
     }
-    Seen out;
+    SeenByRays out;
     const std::size_t n = errors.size();
     if (n < few) return out; // too few to say
     std::sort(errors.begin(), errors.end());
@@ -226,7 +226,7 @@ ShapeId culprit(const ir::Scene &scene, const Asked &asked, const Inputs &inputs
             copy.root = child;
             copy.top_level = {{child, {}}};
             ir::lower(copy);
-            const Seen seen = look(copy, asked, inputs, scene_size, trial_work);
+            const SeenByRays seen = look(copy, asked, inputs, scene_size, trial_work);
             const double e = seen.no_number ? infinity : seen.error;
             if (e > most) worst = child, most = e;
         }
@@ -270,7 +270,7 @@ void bound_rounding(ir::Scene &scene, Diagnostics &diagnostics,
     RoundingMachine machine(scene, scene.distance);
     const ir::Frame frame = ir::frame_of(scene, ir::view_of(scene, 0, 1), height);
     double bound = 0;
-    Seen seen;
+    SeenByRays seen;
     const std::vector<Asked> regions = regions_of(scene);
     const Asked *worst = nullptr;
     bool all = true;
@@ -281,8 +281,8 @@ void bound_rounding(ir::Scene &scene, Diagnostics &diagnostics,
         all = false;
         // What is wrong far away alone is no reason to lower what is near.
         if (&asked - regions.data() >= tried_regions) continue;
-        const Seen here = look(scene, asked, inputs, frame.radius,
-                               regions.size() == 1 ? trial_work : trial_work / tried_regions);
+        const SeenByRays here = look(scene, asked, inputs, frame.radius,
+                                     regions.size() == 1 ? trial_work : trial_work / tried_regions);
         if (seen.useless ? !here.useless : !here.useless && here.error <= seen.error) continue;
         seen = here, worst = &asked;
     }

@@ -5,7 +5,7 @@
 namespace fathom::ir {
 namespace {
 
-struct Writer {
+struct Inliner {
     Graph &graph;
     std::size_t left; // nodes that may still be looked at
     bool loops = false;
@@ -127,13 +127,13 @@ std::vector<NodeId> after_iteration(Graph &graph, const Loop &loop, int iteratio
 }
 
 WithoutCalls without_calls(Graph &graph, NodeId root, std::size_t max_nodes) {
-    Writer writer{graph, max_nodes};
+    Inliner writer{graph, max_nodes};
     const NodeId out = writer.of(root);
     return {out, writer.all};
 }
 
 WithoutCalls without_loops(Graph &graph, NodeId root, std::size_t max_nodes) {
-    Writer writer{graph, max_nodes, true};
+    Inliner writer{graph, max_nodes, true};
     const NodeId out = writer.of(root);
     return {out, writer.all};
 }
