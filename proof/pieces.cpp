@@ -6,6 +6,7 @@
 #include "ir/passes/inline.h"
 #include "proof/continuity.h"
 #include "proof/machine.h"
+#include "proof/roots.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,51 @@ constexpr ir::OpTable<How> how_of_op{
 
 using Affine = std::map<NodeId, double>; // by part; numbers that are added do not count
 
+// One way that all choices may go. `length`: the one |q| that stands in a row beside other parts, if
+// there is one; `of`: q's rows.
+struct Piece {
+    std::vector<Affine> rows;
+    NodeId length;
+    std::vector<Affine> of;
+};
+
+// Row k is a_k |q| + b_k p with q = Q p: its Jacobian is J = a n^T Q + B, n of length 1, so that
+// J J^T <= |Q|^2 a a^T + B B^T + 2 |a| |Q B^T|. With e_1 along a row of Q, the norm of [a |Q|, B] is at
+// most that of [a |Q|, B e_2, B e_3] and |B e_1|. Both corrections are 0 where every b_k is an axis of q.
+double norm_about_axis(const std::vector<double> &a, const std::vector<Row> &b,
+                       const std::vector<Row> &q) {
+    using Vector = std::array<double, 3>;
+    const auto dot = [](const auto &x, const auto &y) {
+        double sum = 0;
+        for (std::size_t i = 0; i < 3; ++i) sum += Interval(x[i]).hi * Interval(y[i]).hi;
+        return sum;
+    };
+    const Row &longest = *std::ranges::max_element(q, {}, [&](const Row &r) { return dot(r, r); });
+    const double size = std::sqrt(dot(longest, longest));
+    Vector first{1, 0, 0}, second{};
+    if (size > 0)
+        for (std::size_t i = 0; i < 3; ++i) first[i] = longest[i].hi / size;
+    const std::size_t least = std::size_t(
+        std::ranges::min_element(first, {}, [](double x) { return std::fabs(x); }) - first.begin());
+    for (std::size_t i = 0; i < 3; ++i) second[i] = (i == least) - first[least] * first[i];
+    const double across = std::sqrt(dot(second, second));
+    for (double &x : second) x /= across;
+    const Vector third{first[1] * second[2] - first[2] * second[1],
+                       first[2] * second[0] - first[0] * second[2],
+                       first[0] * second[1] - first[1] * second[0]};
+    const double of_q = spectral_norm(q.data(), int(q.size()));
+    std::vector<Row> matrix;
+    double along = 0, turned = 0, sizes = 0; // |B e_1|, |Q B^T|, |a|, each squared
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        matrix.push_back({a[k] * of_q, dot(b[k], second), dot(b[k], third)});
+        along += std::pow(dot(b[k], first), 2);
+        sizes += a[k] * a[k];
+        for (const Row &row : q) turned += std::pow(dot(row, b[k]), 2);
+    }
+    const double norm = spectral_norm(matrix.data(), int(matrix.size())) + std::sqrt(along);
+    return std::sqrt(norm * norm + 2 * std::sqrt(sizes) * std::sqrt(turned));
+}
+
 class PieceReader {
   public:
     struct Mode {
@@ -60,19 +106,21 @@ class PieceReader {
         : graph_(graph), steps_(steps), first_(steps), mode_(mode) {}
 
     std::optional<Pieces> read(const std::vector<NodeId> &of) {
-        std::vector<std::vector<Affine>> pieces;
+        std::vector<Piece> pieces;
         do {
             next_ = 0;
             way_.clear();
-            std::vector<Affine> rows;
             of_ = of;
-            for (NodeId id : of)
-                for (int i = 0; i < ir::components(graph_[id].type); ++i)
-                    rows.push_back(component(id, i, 0));
+            std::vector<Affine> rows = rows_of(of);
             if (mode_.lengths) expand_lengths(rows);
             if (failed_ || rows.size() > max_rows || int(pieces.size()) > max_pieces) return {};
-            pieces.push_back(std::move(rows));
+            pieces.push_back(with_length(std::move(rows)));
+            if (failed_) return {};
         } while (to_next());
+        if (std::ranges::any_of(pieces, [](const Piece &piece) { return bool(piece.length); })) {
+            if (auto found = measured(pieces)) return found;
+            for (Piece &piece : pieces) piece.length = {}; // a part as any other
+        }
         return measured(pieces);
     }
 
@@ -90,6 +138,7 @@ class PieceReader {
     std::size_t next_ = 0;
     std::map<std::pair<NodeId, int>, int> way_; // of this piece
     std::map<NodeId, NodeId> called_;
+    std::map<NodeId, std::vector<NodeId>> measured_; // by length: what it is the length of
 
     int way(NodeId id, int i, int many) {
         const auto [it, fresh] = way_.try_emplace({id, i}, 0);
@@ -244,32 +293,71 @@ class PieceReader {
         return part(id, i);
     }
 
+    // The vectors and numbers that a part is the length of together; none where it is no length.
+    const std::vector<NodeId> &length_of(NodeId part) {
+        const auto [at, fresh] = measured_.try_emplace(part);
+        if (!fresh) return at->second;
+        if (graph_[part].op == Op::Length)
+            at->second = {graph_.arg(part, 0)};
+        else if (graph_[part].op == Op::Sqrt)
+            at->second = norm_parts(graph_, part).value_or(std::vector<NodeId>());
+        return at->second;
+    }
+    std::vector<Affine> rows_of(const std::vector<NodeId> &of) {
+        std::vector<Affine> rows;
+        for (NodeId id : of)
+            for (int c = 0; c < ir::components(graph_[id].type); ++c)
+                rows.push_back(component(id, c, 0));
+        return rows;
+    }
+
     void expand_lengths(std::vector<Affine> &rows) {
         for (std::size_t r = 0; r < rows.size() && !failed_; ++r) {
             if (rows[r].size() != 1) continue;
             const NodeId length = rows[r].begin()->first;
             const double by = rows[r].begin()->second;
-            if (graph_[length].op != Op::Length) continue;
+            const std::vector<NodeId> &of = length_of(length);
+            if (of.empty()) continue;
             const bool elsewhere = std::any_of(rows.begin(), rows.end(), [&](const Affine &row) {
                 return &row != &rows[r] && row.contains(length);
             });
             if (elsewhere) continue;
-            const NodeId of = graph_.arg(length, 0);
             rows.erase(rows.begin() + std::ptrdiff_t(r));
-            for (int c = 0; c < ir::components(graph_[of].type); ++c)
-                rows.push_back(add({}, component(of, c, 0), by));
+            for (const Affine &row : rows_of(of)) rows.push_back(add({}, row, by));
             if (rows.size() > max_rows) failed_ = true;
             --r;
         }
     }
 
-    std::optional<Pieces> measured(const std::vector<std::vector<Affine>> &pieces) {
+    // What expand_lengths left: where it is one length, with the rows of its vector.
+    Piece with_length(std::vector<Affine> rows) {
+        Piece out{std::move(rows), {}, {}};
+        if (!mode_.lengths) return out;
+        for (const Affine &row : out.rows)
+            for (const auto &[part, c] : row) {
+                if (part == out.length || length_of(part).empty()) continue;
+                if (out.length) return {std::move(out.rows), {}, {}};
+                out.length = part;
+            }
+        if (!out.length) return out;
+        out.of = rows_of(length_of(out.length));
+        if (out.of.empty()) out.length = {};
+        return out;
+    }
+
+    std::optional<Pieces> measured(const std::vector<Piece> &pieces) {
         Pieces out;
-        for (const auto &rows : pieces)
-            for (const Affine &row : rows)
-                for (const auto &[part, c] : row)
-                    if (std::find(out.parts.begin(), out.parts.end(), part) == out.parts.end())
-                        out.parts.push_back(part);
+        for (const Piece &piece : pieces) {
+            const auto add_parts = [&](const std::vector<Affine> &rows) {
+                for (const Affine &row : rows)
+                    for (const auto &[part, c] : row)
+                        if (part != piece.length &&
+                            std::ranges::find(out.parts, part) == out.parts.end())
+                            out.parts.push_back(part);
+            };
+            add_parts(piece.rows);
+            if (piece.length) add_parts(piece.of);
+        }
         if (out.parts.empty() || out.parts.size() > max_parts) return {};
         // What is a part of itself is made of nothing nearer.
         for (NodeId part : out.parts)
@@ -277,16 +365,32 @@ class PieceReader {
                                                        graph_.arg(part, 0) == of_[0])))
                 return {};
         double longest = 0; // of a row
-        for (const auto &rows : pieces) {
-            std::vector<Row> matrix;
-            for (const Affine &row : rows) {
-                Row &to = matrix.emplace_back();
-                for (const auto &[part, c] : row)
-                    to[std::size_t(std::find(out.parts.begin(), out.parts.end(), part) -
-                                   out.parts.begin())] = c;
-            }
-            out.norm = std::max(out.norm, spectral_norm(matrix.data(), int(matrix.size())));
+        for (const Piece &piece : pieces) {
+            std::vector<double> lengths; // what the length is multiplied with
+            const auto matrix_of = [&](const std::vector<Affine> &rows) {
+                std::vector<Row> matrix;
+                for (const Affine &row : rows) {
+                    Row &to = matrix.emplace_back();
+                    for (const auto &[part, c] : row)
+                        if (part != piece.length)
+                            to[std::size_t(std::ranges::find(out.parts, part) -
+                                           out.parts.begin())] = c;
+                }
+                return matrix;
+            };
+            const std::vector<Row> matrix = matrix_of(piece.rows);
             for (const Row &row : matrix) longest = std::max(longest, spectral_norm(&row, 1));
+            double norm = 0;
+            if (piece.length) {
+                for (const Affine &row : piece.rows) {
+                    const auto at = row.find(piece.length);
+                    lengths.push_back(at == row.end() ? 0 : at->second);
+                }
+                norm = norm_about_axis(lengths, matrix, matrix_of(piece.of));
+            } else {
+                norm = spectral_norm(matrix.data(), int(matrix.size()));
+            }
+            out.norm = std::max(out.norm, norm);
         }
         out.norm = ir::rounding::up(out.norm * (1 + 1e-13), 4);
         out.at_right_angles = out.norm <= longest * (1 + 1e-6);

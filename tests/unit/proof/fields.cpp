@@ -192,3 +192,29 @@ TEST_CASE("a box as everyone writes it is no steeper than a distance") {
     // With a component forgotten it is another field, which is steeper.
     CHECK(s.bound(g.add(inside(yz), outside)).lipschitz > 1.3);
 }
+
+TEST_CASE("a distance from a line and the way along it are at right angles") {
+    Scenery s;
+    Graph &g = s.g;
+    const auto times = [&](double by, NodeId of) { return g.mul(s.n(by), of); };
+    const NodeId d = g.make(Op::Make, Type::Vec3, {s.n(2.0 / 7), s.n(3.0 / 7), s.n(6.0 / 7)});
+    const NodeId along = g.make(Op::Dot, {s.p, d});
+    const NodeId way = g.mul(d, g.splat(along, Type::Vec3));
+    const NodeId from = s.length(g.sub(s.p, way));
+    const auto turned = [&](NodeId r, NodeId y) {
+        const NodeId size = g.make(Op::Abs, {y});
+        return s.length(g.make(
+            Op::Make, Type::Vec2,
+            {g.add(times(0.6, r), times(0.8, size)), g.sub(times(0.8, r), times(0.6, size))}));
+    };
+    CHECK(s.bound(turned(from, along)).lipschitz == Approx(1).epsilon(1e-7));
+    // from a point, which the way along does change
+    auto point = s.bound(turned(s.length(s.p), along));
+    CHECK(point.lipschitz >= point.sampled);
+    CHECK(point.lipschitz > 1.2);
+    // along another line
+    auto other = s.bound(turned(from, s.x));
+    CHECK(other.lipschitz >= other.sampled);
+    CHECK(other.lipschitz > 1.05);
+    CHECK(other.lipschitz < 1.5);
+}
