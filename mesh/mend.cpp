@@ -12,6 +12,10 @@ constexpr double nodes_a_cell = 16;   // that dividing one once may take, with i
 constexpr int deepest_blind = 4;      // levels that are tried where nothing shows,
 constexpr std::size_t few_blind = 32; // … or all, in so many drawing cells at most
 constexpr int most_rounds = 12;
+// A round that divides all that is in doubt halves it or more: surface goes through half of a cell's
+// parts. Where some of it is out of reach the rounds go on while they take a quarter.
+constexpr std::uint64_t worth = 4;
+constexpr int boxes_shrink_from = 2; // levels: certificates look no closer into what is larger
 
 // The open leaves about one, a drawing cell away at most: where nothing of a gap or a wall is seen, more
 // of it is seen beside there.
@@ -83,8 +87,12 @@ double nodes_for(const Patient &patient) {
 using Depths = std::unordered_map<std::uint64_t, int>;
 
 // All cells that might be divided for a certificate's doubts, each once, and how deep.
-std::vector<Patient> patients(const Made &made, const Certificate &certificate, const Field &field,
-                              unsigned threads, Progress &progress, Depths &depths) {
+struct Patients {
+    std::vector<Patient> all;
+    std::unordered_set<std::uint64_t> blocks; // all drawing cells with a doubt, by their key
+};
+Patients patients(const Made &made, const Certificate &certificate, const Field &field,
+                  unsigned threads, Progress &progress, Depths &depths) {
     const Octree &octree = made.octree;
     const Lattice &lattice = octree.lattice;
     struct Doubt {
@@ -112,6 +120,8 @@ std::vector<Patient> patients(const Made &made, const Certificate &certificate, 
             octree.nodes[static_cast<std::size_t>(leaf.node)].space == Space::Open)
             doubts.push_back({leaf, place.at});
     }
+    Patients result;
+    for (const Doubt &doubt : doubts) result.blocks.insert(key_of(block_of(lattice, doubt.cell)));
     std::erase_if(doubts, [&](const Doubt &doubt) { return doubt.cell.level >= lattice.depth; });
     std::ranges::stable_sort(doubts, {}, [](const Doubt &doubt) { return doubt.cell.node; });
     const auto same = [](const Doubt &x, const Doubt &y) { return x.cell.node == y.cell.node; };
@@ -131,18 +141,24 @@ std::vector<Patient> patients(const Made &made, const Certificate &certificate, 
             found[k] = levels_that_show(lattice, evaluator, first[k]->at).value_or(blind);
         });
     for (std::size_t k = 0; k < first.size(); ++k) depths[first[k]->block] = found[k];
-    std::vector<Patient> result;
     for (const Doubt &doubt : doubts) { // cells may be one level smaller than is likely to do
         const int levels = lattice.level + depths[doubt.block] - doubt.cell.level;
-        if (levels >= 0) result.push_back({doubt.cell, std::max(levels, 1)});
+        if (levels >= 0) result.all.push_back({doubt.cell, std::max(levels, 1)});
     }
     return result;
 }
 
-// Some of them: whole clusters of neighbouring drawing cells, those that take least first, as long as
-// all of them together take no more than so many nodes.
-std::vector<Cell> affordable(const std::vector<Patient> &all, const Lattice &lattice,
-                             double nodes) {
+// What a round divides, and whether some doubt is out of reach of this round and of all that follow.
+struct Choice {
+    std::vector<Cell> cells;
+    bool hopeless = false;
+};
+
+// Whole clusters of neighbouring drawing cells, those that take least first, as long as all of them
+// together take no more than so many nodes.
+Choice affordable(const Patients &patients, const Lattice &lattice, double nodes) {
+    const std::vector<Patient> &all = patients.all;
+    std::unordered_set<std::uint64_t> in_reach; // drawing cells that are divided, or lie beside one
     std::unordered_map<std::uint64_t, std::vector<std::size_t>> by_block;
     for (std::size_t k = 0; k < all.size(); ++k)
         by_block[key_of(block_of(lattice, all[k].cell))].push_back(k);
@@ -164,12 +180,18 @@ std::vector<Cell> affordable(const std::vector<Patient> &all, const Lattice &lat
                 cluster.nodes += nodes_for(all[k]);
             }
             by_block.erase(block);
-            for (std::int64_t k = 0; k < 27; ++k)
+            for (std::int64_t k = 0; k < 27; ++k) {
                 stack.push_back({at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1});
+                in_reach.insert(key_of(stack.back()));
+            }
         }
         if (!cluster.members.empty()) clusters.push_back(std::move(cluster));
     }
     std::ranges::stable_sort(clusters, {}, &Cluster::nodes);
+    Choice choice;
+    choice.hopeless =
+        (!clusters.empty() && clusters.back().nodes > nodes) ||
+        std::ranges::any_of(patients.blocks, [&](auto block) { return !in_reach.contains(block); });
     std::vector<std::size_t> taken;
     for (const Cluster &cluster : clusters) {
         nodes -= cluster.nodes;
@@ -177,9 +199,38 @@ std::vector<Cell> affordable(const std::vector<Patient> &all, const Lattice &lat
         taken.insert(taken.end(), cluster.members.begin(), cluster.members.end());
     }
     std::ranges::sort(taken);
-    std::vector<Cell> cells;
-    for (const std::size_t k : taken) cells.push_back(all[k].cell);
-    return cells;
+    for (const std::size_t k : taken) choice.cells.push_back(all[k].cell);
+    return choice;
+}
+
+// The volume of what is undecided, in cells of the finest level.
+std::uint64_t volume_in_doubt(const Certificate &certificate, const Lattice &lattice) {
+    std::uint64_t sum = 0;
+    for (const Cell &cell : certificate.undecided)
+        sum += std::uint64_t{1} << (3 * (lattice.depth - cell.level));
+    return sum;
+}
+
+// Whether a round did so much that another is worth its time: it left less in doubt. Where all is in
+// reach anything else will do: about what touches, doubt may grow before it ends.
+bool gains(const Certificate &before, const Certificate &after, const Lattice &lattice,
+           bool hopeless) {
+    const auto worth_it = [&](std::uint64_t was, std::uint64_t is) {
+        return hopeless ? is < was && was - is >= was / worth : is != was;
+    };
+    return worth_it(volume_in_doubt(before, lattice), volume_in_doubt(after, lattice)) ||
+           worth_it(before.unproved.size(), after.unproved.size());
+}
+
+// Whether a round that gains nothing says nothing of the next one: a certificate looks as closely into
+// some cells in doubt as it will into their parts.
+bool gain_may_be_late(const Certificate &certificate, const std::vector<Cell> &divided,
+                      const Lattice &lattice) {
+    const auto large = [&](const Cell &cell) {
+        return cell.level < lattice.level + boxes_shrink_from;
+    };
+    return std::ranges::any_of(certificate.undecided, large) ||
+           (!certificate.unproved.empty() && std::ranges::any_of(divided, large));
 }
 
 } // namespace
@@ -205,10 +256,13 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
     Depths depths;
     while (!progress.cancelled && mended.rounds < most_rounds) {
         const double left = double(most) - double(mended.made.octree.nodes.size());
-        std::vector<Cell> divided = affordable(
+        Choice choice = affordable(
             patients(mended.made, mended.certificate, field, octree.threads, progress, depths),
             mended.made.octree.lattice, left);
+        std::vector<Cell> &divided = choice.cells;
         if (divided.empty() || progress.cancelled) break;
+        const bool may_wait = !choice.hopeless && gain_may_be_late(mended.certificate, divided,
+                                                                   mended.made.octree.lattice);
         Made next; // what there is stays, should this one come to nothing
         next.box = mended.made.box;
         next.octree = mended.made.octree;
@@ -222,9 +276,13 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
         for (const Cell &cell : divided) changed.add(cell);
         const Earlier earlier{mended.certificate, changed};
         progress.phase(here + 0.5 * (1 - here));
-        mended.certificate = certify(field, settings, next, &earlier, progress);
+        Certificate certificate = certify(field, settings, next, &earlier, progress);
+        const bool gained =
+            gains(mended.certificate, certificate, next.octree.lattice, choice.hopeless);
+        mended.certificate = std::move(certificate);
         mended.made = std::move(next);
         ++mended.rounds;
+        if (!gained && !may_wait) break;
     }
     if (progress.cancelled) mended.made.failure = Failure::Cancelled;
     return mended;

@@ -155,6 +155,32 @@ TEST_CASE("mending has an end, and what is undecided then is listed") {
     CHECK(result.certificate.undecided.size() > 100);
 }
 
+TEST_CASE("mending ends with the first round that gains nothing, however many threads there are") {
+    // Two boards that touch at an angle to the axes: no finer cell decides the plane between them.
+    const driver::Compilation c = driver::compile_text(
+        "mesh.sdf",
+        "(box([1, 0.3, 0.2]) | box([1, 0.3, 0.2]).translate(x: 1)).rotate(0.3, axis: [1, 2, 3])",
+        "", {});
+    REQUIRE(c.good());
+    std::vector<mesh::Mended> all;
+    for (const unsigned threads : {1u, 3u, 16u}) {
+        mesh::Settings settings = cells(24);
+        settings.threads = threads;
+        all.push_back(mesh::make_certified_mesh(c.scene, settings));
+        const mesh::Mended &result = all.back();
+        const mesh::Lattice &lattice = result.made.octree.lattice;
+        CHECK_FALSE(result.certificate.certified());
+        for (const mesh::Cell &cell : result.certificate.undecided)
+            CHECK(cell.level == lattice.depth);
+        // One for each level, and the one that showed that it was in vain.
+        CHECK(result.rounds == lattice.depth - lattice.level + 1);
+        CHECK(result.rounds == all[0].rounds);
+        CHECK(result.certificate.undecided.size() == all[0].certificate.undecided.size());
+        CHECK(result.made.mesh.vertices == all[0].made.mesh.vertices);
+        CHECK(result.made.mesh.triangles == all[0].made.mesh.triangles);
+    }
+}
+
 TEST_CASE("a root on a flat face is known to a small part of its edge") {
     const driver::Compilation c = driver::compile_text("mesh.sdf", "box([2, 1, 1.5])", "", {});
     REQUIRE(c.good());
