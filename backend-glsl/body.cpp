@@ -652,24 +652,39 @@ class Writer {
         std::string at = inside ? at_least(expression(row), Product)
                                 : fmt::format("clamp({}, 0, {})", value(row), use.rows - 1);
         if (use.texels > 1) at += fmt::format(" * {}", use.texels);
-        const int size = ir::components(node.type);
-        int column = ir::column_of(node.payload), left = size;
-        std::string parts;
-        for (int piece = 0; left > 0; ++piece) {
-            const int first = column / 4, from = column % 4, count = std::min(left, 4 - from);
-            parts +=
-                (piece ? ", " : "") + texel(use, at + (first ? fmt::format(" + {}", first) : ""));
-            if (count < 4)
-                parts += "." + std::string("xyzw").substr(static_cast<std::size_t>(from),
-                                                          static_cast<std::size_t>(count));
-            column += count;
-            left -= count;
+        const int column = ir::column_of(node.payload);
+        if (ir::is_matrix(node.type)) {
+            // A constructor of a matrix takes its columns alone: of vectors that lie across columns,
+            // as texels do, NVIDIA's driver (580) makes other matrices, or refuses them.
+            const int side = ir::side(node.type);
+            std::string columns;
+            for (int i = 0; i < side; ++i)
+                columns += (i ? ", " : "") + numbers(use, at, column + i * side, side);
+            return {std::string(glsl_type(node.type)) + "(" + columns + ")", Primary};
         }
-        const bool one_piece = ir::column_of(node.payload) % 4 + size <= 4;
-        if (node.type == Type::Bool) return {parts + " != 0.0", Equality};
-        if (node.type == Type::Int) return {"int(" + parts + ")", Primary};
-        if (one_piece && !ir::is_matrix(node.type)) return {parts, Primary};
-        return {std::string(glsl_type(node.type)) + "(" + parts + ")", Primary};
+        const std::string read = numbers(use, at, column, ir::components(node.type));
+        if (node.type == Type::Bool) return {read + " != 0.0", Equality};
+        if (node.type == Type::Int) return {"int(" + read + ")", Primary};
+        return {read, Primary};
+    }
+
+    // `count` numbers of a row, 1 to 4, from `column` on, as a float or a vector. `row`: the place of
+    // its first texel.
+    static std::string numbers(const TableUse &use, const std::string &row, int column, int count) {
+        std::string parts;
+        int left = count;
+        while (left > 0) {
+            const int first = column / 4, from = column % 4, taken = std::min(left, 4 - from);
+            parts += (left < count ? ", " : "") +
+                     texel(use, row + (first ? fmt::format(" + {}", first) : ""));
+            if (taken < 4)
+                parts += "." + std::string("xyzw").substr(static_cast<std::size_t>(from),
+                                                          static_cast<std::size_t>(taken));
+            if (taken == count) return parts;
+            column += taken;
+            left -= taken;
+        }
+        return fmt::format("vec{}({})", count, parts);
     }
 
     Module &module_;

@@ -333,3 +333,44 @@ TEST_CASE(
     scene.render.max_steps = 77;
     CHECK(count(emitted(scene, {.target = glsl::Target::Shadertoy}).text, "int limit = 77") == 2);
 }
+
+TEST_CASE("a matrix in a table is made of its columns, wherever its row begins in a texel") {
+    for (int column : {0, 1, 2, 3})
+        for (Type type : {Type::Mat2, Type::Mat3, Type::Mat4}) {
+            const int side = ir::side(type);
+            CAPTURE(column, side);
+            const Scene scene = of_field([&](Graph &g, NodeId p) {
+                ir::Table table{3, column + side * side, {}};
+                for (int i = 0; i < table.rows * table.stride; ++i)
+                    table.data.push_back(0.01f * float(i));
+                const NodeId row = g.make(Op::ToInt, Type::Int, {g.component(p, 0)}),
+                             matrix = g.make(Op::TableRead, type, {row},
+                                             table_slot(g.add_table(table), column)),
+                             first = g.make(Op::Column, ir::vector_type(side), {matrix}, 0);
+                return g.add(g.component(first, 0), g.number(-1));
+            });
+            const std::string text = sdf_of(scene, {.target = glsl::Target::Glsl330});
+            const std::string size = std::to_string(side);
+            std::size_t at = text.find("mat" + size + "(");
+            REQUIRE(at != std::string::npos);
+            std::vector<std::string> columns(1);
+            int depth = 0;
+            for (at += 5; depth > 0 || text[at] != ')'; ++at) {
+                depth += (text[at] == '(') - (text[at] == ')');
+                if (depth == 0 && text[at] == ',')
+                    columns.emplace_back();
+                else
+                    columns.back() += text[at];
+            }
+            CHECK(columns.size() == static_cast<std::size_t>(side));
+            for (const std::string &each : columns) {
+                CAPTURE(each);
+                const std::string read = each.substr(each.find_first_not_of(" \n"));
+                const std::size_t dot = read.rfind('.'), close = read.find_last_of(")]");
+                const bool whole = dot == std::string::npos || dot < close;
+                CHECK((read.starts_with("vec" + size + "(") || (whole && side == 4) ||
+                       (!whole && read.find_first_not_of("xyzw", dot + 1) >=
+                                      dot + 1 + static_cast<std::size_t>(side))));
+            }
+        }
+}
