@@ -467,6 +467,10 @@ class Writer {
             if (!ir::is_matrix(node.type) && known_.below(arg(0), arg(1)))
                 return {"smoothstep(" + list(id) + ")", Primary};
             return {filled_by_helper(id, "fathom_smoothstep"), Primary};
+        case Op::Clamp: // GLSL's own is undefined where the limits are in the wrong order
+            if (!ir::is_matrix(node.type) && known_.below(arg(1), arg(2)))
+                return {"clamp(" + list(id) + ")", Primary};
+            return by_table(id);
         case Op::Pow:
             if (!ir::is_matrix(node.type))
                 if (Text made = power(id, known_.exponent(arg(1))); !made.text.empty()) return made;
@@ -483,7 +487,6 @@ class Writer {
         case Op::Fract:
 #define FATHOM_FUNCTION(name, ...) case Op::name:
 #include "ir/ops.def"
-        case Op::Clamp:
         case Op::Mix:
         case Op::Dot:
         case Op::Length:

@@ -1,6 +1,6 @@
 // fathom-bench: prints the table of measures. What falls short of what the project aims at is
 // marked "!". With names of groups as arguments, only those. `figures SCENE` measures the noise
-// cache of one scene instead.
+// cache of one scene instead, `meshes` certificates, `frames` what a card takes.
 #include "bench/measure.h"
 
 #include <CLI/CLI.hpp>
@@ -47,12 +47,28 @@ int meshes(int argc, char **argv) {
     return measure_meshes(options);
 }
 
+int frames(int argc, char **argv) {
+    fathom::bench::FrameOptions options;
+    std::vector<int> size;
+    CLI::App app("what a driver takes to link scenes, and a card to draw them",
+                 "fathom-bench frames");
+    app.add_option("FILE", options.files, "all examples unless said");
+    app.add_option("--size", size, "WIDTHxHEIGHT, 1280x720 unless said")
+        ->delimiter('x')
+        ->expected(2);
+    app.add_option("--frames", options.frames, "whose median is told")->check(CLI::Range(1, 1000));
+    CLI11_PARSE(app, argc, argv);
+    if (size.size() == 2) options.width = size[0], options.height = size[1];
+    return measure_frames(options);
+}
+
 } // namespace
 
 int main(int argc, char **argv) {
     using namespace fathom::bench;
     if (argc > 1 && argv[1] == std::string("figures")) return figures(argc - 1, argv + 1);
     if (argc > 1 && argv[1] == std::string("meshes")) return meshes(argc - 1, argv + 1);
+    if (argc > 1 && argv[1] == std::string("frames")) return frames(argc - 1, argv + 1);
     struct Group {
         const char *name;
         void (*measure)(Table &);

@@ -84,4 +84,11 @@ struct MeshFigureOptions {
 };
 int measure_meshes(const MeshFigureOptions &options); // prints; returns the exit status
 
+// `fathom-bench frames`: what scenes' shaders take of the driver, and a frame of the card.
+struct FrameOptions {
+    std::vector<std::string> files; // none: all examples
+    int width = 1280, height = 720, frames = 3;
+};
+int measure_frames(const FrameOptions &options); // prints; returns the exit status
+
 } // namespace fathom::bench

@@ -374,3 +374,21 @@ TEST_CASE("a matrix in a table is made of its columns, wherever its row begins i
             }
         }
 }
+
+TEST_CASE("GLSL's clamp is used where its limits are known to be in order alone") {
+    const auto text_of = [](const std::function<NodeId(Graph &, NodeId x)> &field) {
+        return sdf_of(of_field(
+            [&](Graph &g, NodeId p) { return g.sub(field(g, g.component(p, 0)), g.number(2)); }));
+    };
+    const auto clamped = [](Graph &g, NodeId x, NodeId lo, NodeId hi) {
+        return g.make(Op::Clamp, {x, lo, hi});
+    };
+    CHECK(
+        count(text_of([&](Graph &g, NodeId x) { return clamped(g, x, g.number(-1), g.number(1)); }),
+              "clamp(p.x, -1.0, 1.0)") == 1);
+    CHECK(
+        count(text_of([&](Graph &g, NodeId x) { return clamped(g, x, g.number(1), g.number(-1)); }),
+              "min(max(p.x, 1.0), -1.0)") == 1);
+    CHECK(count(text_of([&](Graph &g, NodeId x) { return clamped(g, x, g.neg(x), x); }),
+                "min(max(p.x, -p.x), p.x)") == 1);
+}
