@@ -98,6 +98,12 @@ struct Pruning {
     PruneKernel far; // no text where rays are not to look for far cells
 };
 
+// How many turns of loops one evaluation of a field takes (turns.h).
+struct Turns {
+    double all = 0;
+    double written_out = 0; // where the driver writes short loops out
+};
+
 struct Output {
     std::string text;                 // empty where an error was reported
     std::vector<std::uint32_t> words; // spirv
@@ -109,8 +115,8 @@ struct Output {
     std::vector<CachedField> cached;
     Pruning pruning;
     bool reads_time = false;
-    int budget = 0;   // steps that a ray may take in all passes (ir::budget_of)
-    double turns = 0; // of loops, in one evaluation of a field, at most
+    int budget = 0; // steps that a ray may take in all passes (ir::budget_of)
+    Turns turns;    // of loops
 };
 
 Output emit(const ir::Scene &scene, const Options &options, Diagnostics &diagnostics);

@@ -54,7 +54,7 @@ std::string bytes_of(const ir::ImageData &image) {
 // Steps that a draw gives a ray: few, so that no draw is long, and fewer where a step runs long
 // loops (turns.h).
 int steps_a_draw(const Output &output) {
-    return static_cast<int>(std::clamp(50000 / (1 + output.turns) - 128, 16.0, 256.0));
+    return static_cast<int>(std::clamp(50000 / (1 + output.turns.written_out) - 128, 16.0, 256.0));
 }
 
 // The bytes that hexadecimal digits stand for.

@@ -46,7 +46,7 @@ Values values_of(const MarcherOptions &options) {
         {"AROUND", flag(options.around)},
         {"ONE_LIGHT", flag(options.lights == 1)},
         {"AND_PRESENT", options.cached ? " && !fathom_absent" : ""},
-        {"UNLIT", options.lights == 1 && !options.passes ? "return color" : "continue"},
+        {"UNLIT", options.lights == 1 ? "return color" : "continue"},
         {"COUNTED", flag(options.cached || options.passes)},
         {"LIGHTS", fmt::to_string(options.lights)},
         {"SUN_REACH", options.boxed ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},

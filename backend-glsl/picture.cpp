@@ -123,6 +123,8 @@ std::string entry(const Module &module, const ir::View &view) {
     Values values = cache_numbers();
     values.insert({{"LOCATIONS", shown(target.locations || several)}, // of the outputs
                    {"CACHED", shown(cached)},
+                   {"PASSES", shown(module.options.passes && !cached)},
+                   {"ZERO", target.zero},
                    {"ORIGIN", vec3_literal(view.origin)},
                    {"RIGHT", vec3_literal(view.right)},
                    {"UP", vec3_literal(view.up)},

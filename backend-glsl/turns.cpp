@@ -11,12 +11,15 @@ using ir::Op;
 
 namespace {
 
-constexpr int grouped_from = 32; // turns of a loop; drivers write out what is shorter
+constexpr int grouped_from = 32; // turns of a loop; drivers may write out what is shorter
 constexpr double group = 4;      // turns, or more
+// Of the helpers that look into the 27 cells around a point.
+constexpr double neighbors = 3 * (1 + 3 * (1 + 3));
 
 class Counter {
   public:
-    explicit Counter(const Module &module) : module_(module), graph_(module.scene.graph) {}
+    Counter(const Module &module, bool written_out)
+        : module_(module), graph_(module.scene.graph), written_out_(written_out) {}
 
     double of(ir::FunctionId id) {
         if (!id) return 0;
@@ -39,6 +42,8 @@ class Counter {
             todo.insert(todo.end(), graph_.args(id).begin(), graph_.args(id).end());
             if (node.op == Op::Call) sum += of(ir::FunctionId{node.payload});
             if (node.op == Op::Loop) sum += loop(node.payload);
+            if (!written_out_ && (node.op == Op::Worley || node.op == Op::SpotNoise))
+                sum += neighbors;
         }
         return sum;
     }
@@ -52,22 +57,27 @@ class Counter {
         const double within = below(body);
         if (loop.condition || !graph_.as_number(loop.count))
             return loops_[index] = loop.max_count * (1 + within);
-        if (loop.max_count < grouped_from) return loops_[index] = loop.max_count * within;
+        if (loop.max_count < grouped_from)
+            return loops_[index] = loop.max_count * ((written_out_ ? 0 : 1) + within);
         return loops_[index] = loop.max_count / group * (1 + group * within);
     }
 
     const Module &module_;
     const ir::Graph &graph_;
+    const bool written_out_;
     std::unordered_map<std::uint32_t, double> functions_, loops_;
 };
 
 } // namespace
 
-double turns_of(const Module &module) {
-    Counter counter(module);
+Turns turns_of(const Module &module) {
     const ir::Scene &scene = module.scene;
-    return std::max({counter.of(scene.distance), counter.of(scene.safe_radius),
-                     counter.of(scene.shaded), counter.of(scene.hit)});
+    const auto count = [&](bool written_out) {
+        Counter counter(module, written_out);
+        return std::max({counter.of(scene.distance), counter.of(scene.safe_radius),
+                         counter.of(scene.shaded), counter.of(scene.hit)});
+    };
+    return {count(false), count(true)};
 }
 
 } // namespace fathom::glsl

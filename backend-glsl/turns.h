@@ -6,8 +6,7 @@
 
 namespace fathom::glsl {
 
-// In one evaluation of the costliest of the scene's fields, at most; loops that drivers write out
-// (body.cpp, iterations_together) count by their groups.
-double turns_of(const Module &module);
+// In one evaluation of the costliest of the scene's fields, at most.
+Turns turns_of(const Module &module);
 
 } // namespace fathom::glsl

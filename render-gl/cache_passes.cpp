@@ -470,7 +470,7 @@ bool CachedView::draw_exactly(const FrameInputs &inputs, const std::vector<ir::P
     begin_picture();
     targets_.draw_into(false);
     FrameInputs at_once = inputs;
-    at_once.turns = at_once.budget = programs_->exact.most_turns();
+    at_once.pass.turns = at_once.budget = programs_->exact.most_turns();
     programs_->exact.draw(at_once, params);
     targets_.draw_into(true);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);

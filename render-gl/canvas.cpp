@@ -99,7 +99,7 @@ bool Canvas::resize(int width, int height) {
 // tile lies.
 void Canvas::draw_views(const Program &program, std::span<const TileView> views,
                         const std::vector<ir::Param> &params, int sample, bool linear, int row,
-                        int rows, const FrameInputs &pass) {
+                        int rows, const Pass &pass) {
     glEnable(GL_SCISSOR_TEST);
     for (const TileView &view : views) {
         const Tile &tile = view.tile;
@@ -114,9 +114,7 @@ void Canvas::draw_views(const Program &program, std::span<const TileView> views,
         const std::array<double, 2> offset = ir::sample_offset(sample);
         inputs.offset = {offset[0] - tile.x, offset[1] + bottom};
         if (linear) inputs.mode = Mode::Linear;
-        inputs.turns = pass.turns;
-        inputs.resumed = pass.resumed;
-        inputs.kept = pass.kept;
+        inputs.pass = pass;
         program.draw(inputs, params);
     }
     glDisable(GL_SCISSOR_TEST);
@@ -133,7 +131,7 @@ bool Canvas::draw_passes(const Program &program, std::span<const TileView> views
     }
     begun_ = true;
     do {
-        const bool good = passes_.draw([&](const FrameInputs &pass) {
+        const bool good = passes_.draw(program, [&](const Pass &pass) {
             if (sample > 0) { // colours add up; what a pixel shows is told by its first sample
                 glEnablei(GL_BLEND, 0);
                 glBlendFunc(GL_ONE, GL_ONE);

@@ -88,7 +88,7 @@ class Canvas {
     bool resize(int width, int height);
     void draw_views(const Program &program, std::span<const TileView> views,
                     const std::vector<ir::Param> &params, int sample, bool linear, int row,
-                    int rows, const FrameInputs &pass);
+                    int rows, const Pass &pass);
     bool draw_passes(const Program &program, std::span<const TileView> views,
                      const std::vector<ir::Param> &params, int sample, int row, int rows,
                      const std::function<bool()> &patient);

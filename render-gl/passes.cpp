@@ -68,12 +68,7 @@ bool Passes::use(const Drawn &drawn) {
     release();
     while (glGetError() != GL_NO_ERROR) {
     } // what was wrong before is not ours to report
-    if (!query_) {
-        glGenQueries(1, &query_);
-        // A driver on the processor compiles a text anew for other targets, for seconds; there the
-        // first pass is as the others, and writing what nobody reads costs little.
-        keeps_first_ = is_software();
-    }
+    if (!query_) glGenQueries(1, &query_);
     drawn_ = drawn;
     rays_ = texture(GL_R8, GL_RED, drawn.width, drawn.height);
     glGenRenderbuffers(1, &depth_);
@@ -127,7 +122,7 @@ void Passes::begin(const Program &program, int bottom, int rows, int turns,
     mark_ = program.marks();
     bottom_ = bottom;
     rows_ = rows;
-    turns_ = turns > 0 ? turns : program.most_turns();
+    turns_ = turns;
     pass_ = 0;
     left_ = 1; // or more: nobody knows yet
     some_ = !only.empty();
@@ -142,12 +137,13 @@ void Passes::begin(const Program &program, int bottom, int rows, int turns,
 }
 
 // Every pass is of all views: what it wrote is read by the next one, and never by itself.
-bool Passes::draw(const std::function<void(const FrameInputs &pass)> &draw) {
-    if (keeps() && !make_kept()) return false;
+bool Passes::draw(const Program &program, const std::function<void(const Pass &pass)> &draw) {
+    if (keeps() && !(program.prepare_to_keep() && make_kept())) return false;
     const auto now = static_cast<std::size_t>(pass_ % 2);
-    FrameInputs pass;
-    pass.turns = turns_;
-    pass.resumed = pass_ > (keeps_first_ ? 0 : 1);
+    Pass pass;
+    pass.keeps = keeps();
+    pass.turns = turns_ > 0 ? turns_ : pass.keeps ? program.most_turns() : program.first_turns();
+    pass.resumed = pass_ > 1;
     pass.kept = kept_[1 - now];
     glBindFramebuffer(GL_FRAMEBUFFER, keeps() ? turned_[now] : first_);
     for (GLuint i = 2; i < (keeps() ? 7U : 3U); ++i) glDisablei(GL_BLEND, i);
@@ -157,13 +153,13 @@ bool Passes::draw(const std::function<void(const FrameInputs &pass)> &draw) {
         glScissor(0, bottom_, drawn_.width, rows_);
         const float none[] = {0, 0, 0, 0}, all = 1;
         glClearBufferfv(GL_COLOR, 2, none);
-        if (keeps() && !some_) glClearBufferfv(GL_DEPTH, 0, &all);
+        glDepthMask(GL_TRUE);
+        if (!some_) glClearBufferfv(GL_DEPTH, 0, &all);
     }
-    if (keeps() || some_) {
-        glEnable(GL_DEPTH_TEST);
-        glDepthFunc(GL_LESS); // the triangle lies at 0.5, a ray that goes on at 1
-        glDepthMask(GL_FALSE);
-    }
+    // In every pass: a driver on the processor compiles a text anew for another test.
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS); // the triangle lies at 0.5, a ray that goes on at 1
+    glDepthMask(GL_FALSE);
     draw(pass);
     glDisable(GL_DEPTH_TEST);
     ++pass_;

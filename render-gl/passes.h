@@ -1,7 +1,7 @@
 // A picture by passes: a draw gives a ray so many steps, and the rays that are not done go on in the
 // next one, from textures that keep where they are; so no draw is long, and a ray may take as many
-// steps as it needs. On a card the first pass keeps nothing, since few pictures need another: the
-// second one begins its rays anew. Needs a current context of GL 3.3.
+// steps as it needs. The first pass keeps nothing, since few pictures need another: the second one
+// begins its rays anew. Needs a current context of GL 3.3.
 #pragma once
 
 #include "render-gl/program.h"
@@ -41,10 +41,10 @@ class Passes {
     // `only`: not 0 where a pixel of these rows is drawn, from the lowest row up; without, all are.
     void begin(const Program &program, int bottom, int rows, int turns,
                std::span<const std::uint8_t> only = {});
-    // One pass. `draw` draws all of it, in however many views, with `turns`, `resumed` and `kept` of
-    // what it is given, and touches neither the framebuffer nor the depth test. False: there is no
-    // memory for what is kept.
-    bool draw(const std::function<void(const FrameInputs &pass)> &draw);
+    // One pass of the program that it was begun with. `draw` draws all of it, in however many views,
+    // and touches neither the framebuffer nor the depth test. False: there is no memory for what is
+    // kept.
+    bool draw(const Program &program, const std::function<void(const Pass &pass)> &draw);
     bool done() const { return left_ == 0; }
     std::uint64_t left() const { return left_; } // rays that go on
 
@@ -63,12 +63,12 @@ void main() {
 
   private:
     bool make_kept();
-    bool keeps() const { return pass_ > 0 || keeps_first_; }
+    bool keeps() const { return pass_ > 0; }
     std::uint64_t count(float above, float below, bool mark) const;
     void release();
 
     Drawn drawn_;
-    bool keeps_first_ = false, some_ = false; // some: the first pass draws marked pixels alone
+    bool some_ = false; // the first pass draws marked pixels alone
     int bottom_ = 0, rows_ = 0, turns_ = 0, pass_ = 0;
     std::uint64_t left_ = 0;
     Undecided undecided_;

@@ -20,12 +20,22 @@ namespace {
 // Mesa's llvmpipe ends a shader after 65,536 turns of all its loops. Beside the steps that are
 // counted a ray takes some for its place, its normal and its penumbras.
 constexpr double most_loop_turns = 50000;
-constexpr int kept_textures = static_cast<int>(std::tuple_size_v<decltype(FrameInputs::kept)>);
+constexpr int kept_textures = static_cast<int>(std::tuple_size_v<decltype(Pass::kept)>);
+constexpr const char *kept_name = "fathom_kept_0"; // stands in texts by passes
 constexpr int uncounted_steps = 128, fewest_turns = 16, most_turns = 1024;
+// Of a text that begins rays alone, which says itself where loops were ended (entry.glsl).
+constexpr int most_at_first = 4096;
+constexpr double loops_of_march = 2; // a step's own
 
 int turns_within(double loops_a_step) {
-    const double steps = most_loop_turns / (1 + loops_a_step) - uncounted_steps;
+    const double steps = most_loop_turns / (loops_of_march + loops_a_step) - uncounted_steps;
     return static_cast<int>(std::clamp(steps, double{fewest_turns}, double{most_turns}));
+}
+
+// The text of a program that begins rays, of which none goes on.
+std::string text_that_begins(const std::string &text) {
+    const std::size_t line = text.find('\n') + 1; // after the version
+    return text.substr(0, line) + "#define FATHOM_BEGINS\n" + text.substr(line);
 }
 
 void unfiltered(GLenum target) {
@@ -58,15 +68,15 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
     Program result;
     result.uniforms_ = output.uniforms;
     result.budget_ = output.budget;
-    result.most_turns_ = turns_within(output.turns);
-    if (auto error = link(result.program_, {{GL_VERTEX_SHADER, triangle_for(output.text)},
-                                            {GL_FRAGMENT_SHADER, output.text}}))
+    const bool software = is_software(), passes = output.text.find(kept_name) != std::string::npos;
+    result.most_turns_ = turns_within(software ? output.turns.all : output.turns.written_out);
+    if (software && passes) result.keeping_text_ = output.text;
+    if (auto error = link(result.program_,
+                          {{GL_VERTEX_SHADER, triangle_for(output.text)},
+                           {GL_FRAGMENT_SHADER,
+                            software && passes ? text_that_begins(output.text) : output.text}}))
         return *error;
-    glUseProgram(result.program_);
-
     if (auto error = result.tables_.fill(output.tables)) return *error;
-    if (!output.tables.empty()) glUniform1i(result.location("fathom_tables"), 0);
-    GLint unit = 1;
     for (const glsl::Sampler &sampler : output.images) {
         const ir::ImageData &image = scene.images[sampler.index];
         if (auto error = too_large(GL_MAX_TEXTURE_SIZE, std::array{image.width, image.height}))
@@ -77,8 +87,7 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
         glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, image.width, image.height, 0, GL_RGBA, GL_FLOAT,
                      image.rgba.data());
         unfiltered(GL_TEXTURE_2D);
-        result.textures_.emplace_back(GL_TEXTURE_2D, texture);
-        glUniform1i(result.location(sampler.name.c_str()), unit++);
+        result.textures_.push_back({GL_TEXTURE_2D, texture, sampler.name});
     }
     for (const glsl::Sampler &sampler : output.grids) {
         const ir::GridData &grid = scene.grids[sampler.index];
@@ -90,27 +99,24 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
         glTexImage3D(GL_TEXTURE_3D, 0, GL_R32F, grid.size[0], grid.size[1], grid.size[2], 0, GL_RED,
                      GL_FLOAT, grid.values.data());
         unfiltered(GL_TEXTURE_3D);
-        result.textures_.emplace_back(GL_TEXTURE_3D, texture);
-        glUniform1i(result.location(sampler.name.c_str()), unit++);
+        result.textures_.push_back({GL_TEXTURE_3D, texture, sampler.name});
     }
-    if (result.location("fathom_kept_0") >= 0) {
+    if (passes) {
         GLint units = 16;
         glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
         result.first_kept_unit_ = units - kept_textures;
         if (auto error = link(result.marks_, {{GL_VERTEX_SHADER, covering_triangle},
                                               {GL_FRAGMENT_SHADER, Passes::marks_text}}))
             return *error;
-        glUseProgram(result.program_);
-        if (unit > result.first_kept_unit_)
+        const int textures = static_cast<int>(result.textures_.size());
+        if (textures >= result.first_kept_unit_)
             return ProgramError{
                 0,
-                fmt::format("the scene has {} images and grids, and this GL holds {}", unit - 1,
+                fmt::format("the scene has {} images and grids, and this GL holds {}", textures,
                             result.first_kept_unit_ - 1),
                 ""};
-        for (int i = 0; i < kept_textures; ++i)
-            glUniform1i(result.location(fmt::format("fathom_kept_{}", i).c_str()),
-                        result.first_kept_unit_ + i);
     }
+    result.name_units(result.program_);
     if (!output.pruning.kernels.empty()) {
         auto pruning = Pruning::build(output.pruning);
         if (const auto *error = std::get_if<ProgramError>(&pruning)) return *error;
@@ -119,11 +125,34 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
     return result;
 }
 
-int Program::location(const char *name) const { return glGetUniformLocation(program_, name); }
+void Program::name_units(unsigned program) const {
+    glUseProgram(program);
+    const auto name = [&](const std::string &sampler, int unit) {
+        glUniform1i(glGetUniformLocation(program, sampler.c_str()), unit);
+    };
+    name("fathom_tables", 0);
+    for (std::size_t i = 0; i < textures_.size(); ++i)
+        name(textures_[i].sampler, 1 + static_cast<int>(i));
+    for (int i = 0; by_passes() && i < kept_textures; ++i)
+        name(fmt::format("fathom_kept_{}", i), first_kept_unit_ + i);
+}
+
+int Program::first_turns() const { return keeping_text_.empty() ? most_turns_ : most_at_first; }
+
+bool Program::prepare_to_keep() const {
+    if (keeping_text_.empty() || keeping_) return true;
+    if (link(keeping_, {{GL_VERTEX_SHADER, triangle_for(keeping_text_)},
+                        {GL_FRAGMENT_SHADER, keeping_text_}}))
+        return false;
+    name_units(keeping_);
+    return true;
+}
 
 void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) const {
     if (pruning_) pruning_->prepare(params, in.time);
-    glUseProgram(program_);
+    const unsigned program = in.pass.keeps && keeping_ ? keeping_ : program_;
+    glUseProgram(program);
+    const auto location = [&](const char *name) { return glGetUniformLocation(program, name); };
     const auto vector = [&](const char *name, const glm::dvec3 &v) {
         glUniform3f(location(name), static_cast<float>(v[0]), static_cast<float>(v[1]),
                     static_cast<float>(v[2]));
@@ -152,21 +181,21 @@ void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) 
     if (by_passes()) {
         const int budget = in.budget > 0 ? in.budget : budget_;
         glUniform1i(location("fathom_budget"), budget);
-        glUniform1i(location("fathom_turns"), in.turns > 0 ? in.turns : budget);
-        glUniform1i(location("fathom_resumed"), in.resumed ? 1 : 0);
-        for (std::size_t i = 0; i < in.kept.size(); ++i) {
+        glUniform1i(location("fathom_turns"), in.pass.turns > 0 ? in.pass.turns : budget);
+        glUniform1i(location("fathom_resumed"), in.pass.resumed ? 1 : 0);
+        for (std::size_t i = 0; i < in.pass.kept.size(); ++i) {
             glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(first_kept_unit_) +
                             static_cast<GLenum>(i));
-            glBindTexture(GL_TEXTURE_2D, in.kept[i]);
+            glBindTexture(GL_TEXTURE_2D, in.pass.kept[i]);
         }
     }
 
-    set_params(program_, uniforms_, params);
+    set_params(program, uniforms_, params);
     tables_.bind();
-    if (pruning_) pruning_->bind(program_);
+    if (pruning_) pruning_->bind(program);
     for (std::size_t i = 0; i < textures_.size(); ++i) {
         glActiveTexture(GL_TEXTURE1 + static_cast<GLenum>(i));
-        glBindTexture(textures_[i].first, textures_[i].second);
+        glBindTexture(textures_[i].target, textures_[i].name);
     }
     draw_triangle();
 }
@@ -209,9 +238,9 @@ void Program::warm_up(const std::vector<ir::Param> &params) const {
     Passes passes; // what is put off is put off for each kind of target
     if (by_passes() && passes.use({textures[0], textures[1], side, side})) {
         passes.begin(*this, 0, side, 1);
-        passes.draw([&](const FrameInputs &pass) {
-            inputs.turns = inputs.budget = 1;
-            inputs.kept = pass.kept;
+        passes.draw(*this, [&](const Pass &pass) {
+            inputs.pass = pass;
+            inputs.pass.turns = inputs.budget = 1;
             glViewport(0, 0, side, side);
             glDisable(GL_SCISSOR_TEST);
             draw(inputs, params);
@@ -234,11 +263,11 @@ void Program::adopt(const glsl::Output &output) {
 }
 
 void Program::release() {
-    for (const auto &[target, name] : textures_) glDeleteTextures(1, &name);
-    if (program_) glDeleteProgram(program_);
-    if (marks_) glDeleteProgram(marks_);
+    for (const Texture &texture : textures_) glDeleteTextures(1, &texture.name);
+    for (unsigned program : {program_, keeping_, marks_})
+        if (program) glDeleteProgram(program);
     textures_.clear();
-    program_ = marks_ = 0;
+    program_ = keeping_ = marks_ = 0;
 }
 
 Program::Program() = default;
@@ -247,6 +276,8 @@ Program::Program(Program &&other) noexcept { *this = std::move(other); }
 Program &Program::operator=(Program &&other) noexcept {
     std::swap(program_, other.program_);
     std::swap(marks_, other.marks_);
+    std::swap(keeping_text_, other.keeping_text_);
+    std::swap(keeping_, other.keeping_);
     std::swap(budget_, other.budget_);
     std::swap(most_turns_, other.most_turns_);
     std::swap(first_kept_unit_, other.first_kept_unit_);

@@ -19,6 +19,14 @@ class Pruning;
 // What a scene's shader writes; the numbers stand in its text.
 enum class Mode { Picture = 0, Heat = 1, Numbers = 2, Linear = 3, Slice = 4, Check = 5 };
 
+// One draw of a picture by passes (passes.h).
+struct Pass {
+    int turns = 0;                  // steps that it may give a ray; 0: the budget
+    bool keeps = false;             // rays that go on are kept
+    bool resumed = false;           // rays go on, from what the textures `kept` tell of them
+    std::array<unsigned, 4> kept{}; // read where `resumed`
+};
+
 // What changes from frame to frame: view, time, params, mode.
 struct FrameInputs {
     ir::View view;
@@ -28,11 +36,10 @@ struct FrameInputs {
     double time = 0;
     Mode mode = Mode::Picture;
     std::array<double, 4> plane{0, 0, 1, 0}; // Mode::Slice: unit normal, offset
-    // Of a program by passes (passes.h): steps that a ray may take in this draw and in all of them,
-    // 0: as many as the scene says; whether rays go on, from what these textures keep of them.
-    int turns = 0, budget = 0;
-    bool resumed = false;
-    std::array<unsigned, 4> kept{};
+    // Of a program by passes: steps that a ray may take in all of them, 0: as many as the scene says;
+    // and the pass.
+    int budget = 0;
+    Pass pass{};
 };
 
 // A linked scene shader with its data on the card.
@@ -49,12 +56,17 @@ class Program {
 
     Pruning *pruning() const; // nothing where all rows are computed everywhere
 
-    // Whether its pictures are drawn by passes, and how many steps a draw may give a ray then.
+    // Whether its pictures are drawn by passes, and how many steps a draw may give a ray then: the
+    // first one, and any other.
     bool by_passes() const { return first_kept_unit_ > 0; }
+    int first_turns() const;
     int most_turns() const { return most_turns_; }
+    // To be called before a draw that keeps its rays. False: the driver has no memory for it.
+    bool prepare_to_keep() const;
     unsigned marks() const { return marks_; } // what marks the rays that go on (passes.h)
 
-    // For passes that set uniforms of their own: the GL program, and how to make it current.
+    // For passes that set uniforms of their own, where it has no passes (passes.h): the GL program,
+    // and how to make it current.
     unsigned name() const { return program_; }
     void use() const;
 
@@ -75,13 +87,22 @@ class Program {
   private:
     Program();
     void release();
-    int location(const char *name) const;
+    void name_units(unsigned program) const;
 
     unsigned program_ = 0, marks_ = 0;
+    // A driver on the processor takes three times as long to compile a text that keeps rays, and a
+    // third longer to draw by it; few pictures need it. There `program_` begins rays alone, and this is
+    // made of the text when it is first wanted. No text: `program_` does both.
+    std::string keeping_text_;
+    mutable unsigned keeping_ = 0;
     int budget_ = 0, most_turns_ = 0, first_kept_unit_ = 0;
     TableData tables_;
-    std::unique_ptr<Pruning> pruning_;                    // where the text runs over lists by cell
-    std::vector<std::pair<unsigned, unsigned>> textures_; // target, name; bound to units 1, 2, …
+    std::unique_ptr<Pruning> pruning_; // where the text runs over lists by cell
+    struct Texture {
+        unsigned target = 0, name = 0;
+        std::string sampler;
+    };
+    std::vector<Texture> textures_; // bound to units 1, 2, …
     std::vector<glsl::Uniform> uniforms_;
     std::vector<float> edited_;
 };

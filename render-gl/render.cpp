@@ -57,10 +57,8 @@ class Target {
 bool draw_sample(const Program &program, const ir::Scene &scene, const Target &target,
                  Passes &passes, FrameInputs inputs, int rows, int turns,
                  std::span<const std::uint8_t> only) {
-    const auto once = [&](const FrameInputs &pass) {
-        inputs.turns = pass.turns;
-        inputs.resumed = pass.resumed;
-        inputs.kept = pass.kept;
+    const auto once = [&](const Pass &pass) {
+        inputs.pass = pass;
         glViewport(0, 0, inputs.width, rows);
         glScissor(0, 0, inputs.width, rows);
         glEnable(GL_SCISSOR_TEST);
@@ -75,7 +73,7 @@ bool draw_sample(const Program &program, const ir::Scene &scene, const Target &t
     }
     passes.begin(program, 0, rows, turns, only);
     while (!passes.done())
-        if (!passes.draw(once)) return false;
+        if (!passes.draw(program, once)) return false;
     return true;
 }
 

@@ -17,7 +17,12 @@ $if PASSES
 //   3  the steps, the touches + 1 (+ 16 where it aims) or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
 //      eye's ray is undecided, and 2 where one from a light is
 uniform int fathom_turns, fathom_budget;
+#ifdef FATHOM_BEGINS // the host never lets rays go on
+const bool fathom_resumed = false;
+#endif
+#ifndef FATHOM_BEGINS
 uniform bool fathom_resumed; // rays go on, else they begin
+#endif
 uniform sampler2D fathom_kept_0, fathom_kept_1, fathom_kept_2, fathom_kept_3;
 $if FOUR_OUTPUTS
 $# WebGL 2 promises no more outputs than four. Of a ray that goes on the colour is what lacks the light; 2 as its
@@ -167,10 +172,6 @@ $end
             if (found) break;
             ++steps;
             float tolerance = fathom_tolerance(t);
-            if (isnan(d)) {
-                fathom_end = 2;
-                break;
-            }
 $if HAS_SAFE_RADIUS
             if (!(d <= 0.0 && aims) && stride > before + max(d, 0.0) && !(d > 0.0 && stride <= reached + span)) {
                 float to = reached + $NEARER_PART * min(span, reached);
@@ -185,9 +186,20 @@ $end
                 aims = false;
                 continue;
             }
-            bool touch = d < 0.25 * fathom_slack_at(t);
-            found = d <= 0.0 || (touch && touches == 0);
+            found = !(d >= 0.25 * fathom_slack_at(t)) || touches != 0;
             if (found) break;
+            float ahead = d;
+$include march_ahead
+        }
+        if (!found) break;
+        float tolerance = fathom_tolerance(t);
+        if (phase == 0 && isnan(d)) {
+            fathom_end = 2;
+            break;
+        }
+        bool touch = d < 0.25 * fathom_slack_at(t);
+        bool on = phase == 0 && d > 0.0 && touches != 0;
+        if (on) {
             bool sheet = touches > 0;
             if (sheet) ++touches;
             if (sheet && !touch) touches = $MAX_TOUCHES + 1;
@@ -196,10 +208,8 @@ $end
                 break;
             }
             if (!touch) touches = 0;
-$include march_ahead
         }
-        if (!found) break;
-        if (phase == 0 && d > 0.0) {
+        if (phase == 0 && d > 0.0 && !on) {
             phase = 2;
             count = 0;
             touched = d;
@@ -215,7 +225,6 @@ $end
         }
         if (phase == 2) {
             float slack = fathom_slack_at(t);
-            float tolerance = fathom_tolerance(t);
             if (count < 8) {
                 least = min(least, d);
                 greatest = max(greatest, d);
@@ -242,8 +251,12 @@ $end
 $if HAS_SAFE_RADIUS
             span = touched_span;
 $end
-            ++turn;
+            on = true;
+        }
+        if (on) {
+            float ahead = max(d, mix(0.25 * fathom_slack_at(t), $GRAZE * tolerance, touches < 0));
 $include march_ahead
+            ++turn;
             continue;
         }
         bool begins = phase == 0;
@@ -272,7 +285,7 @@ $include march_ahead
             ++steps;
         }
         float x = mix(b, a + (b - a) * (at_a / (at_a - at_b)), b > a);
-        float tolerance = fathom_tolerance(mix(x, t, count > 0));
+        tolerance = fathom_tolerance(mix(x, t, count > 0));
         float near = $REFINED * tolerance;
         bool there = count > 0 && (count == $REFINEMENTS || abs(x - t) <= near) ||
                      count == 0 && aims && abs(x - b + 0.25 * tolerance) <= near;

@@ -1,5 +1,5 @@
-$# Statements: the next step of a ray that found d at t.
-            float ahead = max(d, mix(0.25 * fathom_slack_at(t), $GRAZE * tolerance, touches < 0));
+$# Statements: the next step of a ray that found d at t, and may go `ahead`. Without branches where it can be: drivers on
+$# the processor compute both sides.
             float next = ahead;
             bool straight = stride > 0.0;
 $if HAS_SAFE_RADIUS
@@ -15,15 +15,12 @@ $if HAS_SAFE_RADIUS
                 }
             }
 $end
-            if (straight)
-                next += $RELAXATION * ahead * max(stride + ahead - before, 0.0) /
-                        max(stride - ahead + before, $FLATTEST * stride);
-            aims = false;
-            if (stride > 0.0 && before > d) { // where the line through both is 0
-                float to = d * stride / (before - d) + 0.25 * tolerance;
-                aims = to <= $JUMP * tolerance;
-                if (aims) next = max(ahead, to);
-            }
+            float more = $RELAXATION * ahead * max(stride + ahead - before, 0.0) /
+                         max(stride - ahead + before, $FLATTEST * stride);
+            next += mix(0.0, more, straight);
+            float line = d * stride / (before - d) + 0.25 * tolerance; // where the line through both is 0
+            aims = stride > 0.0 && before > d && line <= $JUMP * tolerance;
+            next = mix(next, max(ahead, line), aims);
             float proved = max(end, t + ahead);
             next = min(next, proved - t);
             before = ahead;

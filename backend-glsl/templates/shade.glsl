@@ -314,19 +314,19 @@ $end
     vec3 q = p + margin * n;
     float angle = max(look.soft_shadows, $MIN_ANGLE);
 $if PASSES
-    int first = max(fathom_light_kept, 0);
     if (fathom_light_kept >= 0) color = fathom_kept(fathom_kept_2).rgb;
-    for (int i = $ZERO + first; i < $LIGHTS; ++i) {
-        fathom_Light light = fathom_light(i);
-$else
+$end
 $if ONE_LIGHT
     {
-        fathom_Light light = fathom_light(0);
+        const int i = 0;
+$else
+$if PASSES
+    for (int i = $ZERO + max(fathom_light_kept, 0); i < $LIGHTS; ++i) {
 $else
     for (int i = $ZERO; i < $LIGHTS; ++i) {
+$end
+$end
         fathom_Light light = fathom_light(i);
-$end
-$end
         vec3 way = light.position;
         if (!light.directional) way -= q;
         float away = length(way);

@@ -1,6 +1,5 @@
-#define LIPSCHITZ_DIVIDED
-const vec3 LO = vec3(-1.1964), HI = vec3(1.1964);
-
+#define REACH 1.2
+#define STEP 0.4
 // Improved Perlin noise with an integer hash, the same numbers as the library's.
 float gradient(uvec3 cell, vec3 p, uvec3 at) {
     cell += at;
@@ -27,13 +26,13 @@ float noise(vec3 p) {
     return mix(y.x, y.y, u.z);
 }
 
-// Four octaves push the sphere out by up to 0.1943; farther out the shell is a better step.
+// Four octaves push the sphere out by up to 0.1943; farther out the shell says enough.
 float map(vec3 p) {
     float d = length(p) - 1.0, shell = d - 0.19433;
-    if ((d + 0.19433) / 5.505 <= shell) return shell;
+    if (shell > 0.1) return shell;
     vec3 q = mat3(0.7297214, 0.6821145, -0.047185767, -0.57400304, 0.64863783, 0.49978942, 0.37152007,
                   -0.33762226, 0.8648607) * (3.0 * p);
     float sum = 0.0, a = 0.1;
     for (int i = 0; i < 4; ++i, q *= 2.0, a *= 0.5) sum += a * noise(q + float(i) * vec3(5.3, 1.7, 3.1));
-    return max((d - sum) / 5.505, shell);
+    return d - sum;
 }

@@ -1,5 +1,4 @@
-const vec3 LO = vec3(-1.0017), HI = vec3(1.0017);
-
+#define REACH 1.75
 // Four levels of holes, cut out of a cube.
 float map(vec3 p) {
     vec3 q = abs(p) - 1.0;

@@ -1,5 +1,4 @@
-const vec3 LO = vec3(-7.5088, -1.5088, -4.3088), HI = vec3(7.5088, 1.2838, 4.3088);
-
+#define REACH 8.8
 float box(vec3 p, vec3 b) {
     vec3 q = abs(p) - b;
     return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0);

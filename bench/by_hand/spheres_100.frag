@@ -1,5 +1,4 @@
-const vec3 LO = vec3(-1.2320, -1.2301, -1.2193), HI = vec3(1.2328, 1.2301, 1.2370);
-
+#define REACH 1.25
 // Centre and radius: a uniform, which drivers read faster than a constant array.
 uniform vec4 spheres[100] = vec4[](
     vec4(0.1410674, 0.99, 0, 0.100),
@@ -110,6 +109,5 @@ float map(vec3 p) {
         float e = length(p - s.xyz) - s.w, h = max(0.1 - abs(d - e), 0.0);
         d = min(d, e) - h * h * 2.5;
     }
-    vec3 q = abs(p) - vec3(1.2306, 1.2280, 1.2348);
-    return max(d, length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0));
+    return d;
 }

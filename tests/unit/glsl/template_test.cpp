@@ -32,7 +32,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
          is("FOUR_OUTPUTS") && name == "march" ? "1" : ""}, // others stand beside a pick
         {"FLAT", is("SHADED_APART") ? "false" : "least >= 0.5"},
         {"AND_PRESENT", is("CACHED") ? " && !fathom_absent" : ""},
-        {"UNLIT", is("ONE_LIGHT") && !is("PASSES") ? "return color" : "continue"},
+        {"UNLIT", is("ONE_LIGHT") ? "return color" : "continue"},
         {"SUN_REACH", is("BOXED") ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
         {"OUTSIDE", "fathom_off(p)"},
         {"VALUES", "    if (which == 0) return vec4(p.x);\n"},
@@ -221,8 +221,7 @@ Frame frame_of(std::string_view name, const Values &values) {
         return {
             scene + expanded("march") +
                 "void ahead(float t, float d, float before, float stride, float end, float span, "
-                "float reached) {\n    int touches = 0;\n    bool aims;\n    float tolerance = "
-                "0.1;\n",
+                "float reached) {\n    bool aims;\n    float ahead = d, tolerance = 0.1;\n",
             "}\n" + end};
     if (name == "shadow_ahead")
         return {marched + "void ahead(vec3 q, vec3 l, float s, bool mark, float shadow, float "
@@ -323,6 +322,7 @@ TEST_CASE("a target's own templates are a shader together, whatever flags are se
 }
 
 TEST_CASE("every template is a shader on its own, whatever flags are set") {
+    const char *const begins = "#define FATHOM_BEGINS\n";
     std::mt19937 random(1);
     for (const std::string_view name : glsl::template_names()) {
         // none, each alone, each left out, all, and some at random
@@ -341,13 +341,13 @@ TEST_CASE("every template is a shader on its own, whatever flags are set") {
         for (std::set<std::string> &on : choices) {
             if (on.contains("CACHED")) on.insert("LOCATIONS"); // there are several outputs
             const Values values = values_with(name, on);
-            for (const char *cached :
-                 {"", "#define FATHOM_CACHE\n", "#define FATHOM_CACHE_LEARN\n"}) {
-                if (*cached && !name.starts_with("cache_")) continue;
+            for (const char *defined :
+                 {"", "#define FATHOM_CACHE\n", "#define FATHOM_CACHE_LEARN\n", begins}) {
+                if (*defined && !name.starts_with(defined == begins ? "march" : "cache_")) continue;
                 if (of_target(name)) continue; // below
                 const Frame frame = frame_of(name, values);
                 std::string text = frame.before + glsl::expand(name, values) + frame.after;
-                text.insert(text.find("#version") == 0 ? text.find('\n') + 1 : 0, cached);
+                text.insert(text.find("#version") == 0 ? text.find('\n') + 1 : 0, defined);
                 if (!tried.insert(text).second) continue;
                 CAPTURE(name, text);
                 const auto complaint = glsl::validate(text, frame.stage);
