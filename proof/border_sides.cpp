@@ -145,10 +145,17 @@ bool Border::turns_with(NodeId step, int component, const Near &t) const {
             id = graph.arg(id, first ? 1 : 0);
         }
     };
-    return base(graph.arg(step, 0)) == base(group.turning) ||
-           (graph[step].op == Op::Mod && graph[group.turning].op == Op::Div &&
-            graph.arg(step, 0) == graph.arg(group.turning, 0) &&
-            graph.arg(step, 1) == graph.arg(group.turning, 1));
+    const auto written = [&](NodeId vector, int i) {
+        NodeId out = component_of(graph, vector, i);
+        for (NodeId before; before != out; out = component_of(graph, out, 0)) before = out;
+        return out;
+    };
+    const NodeId own = written(graph.arg(step, 0), component),
+                 turning = written(group.turning, group.component);
+    return base(own) == base(turning) ||
+           (graph[step].op == Op::Mod && graph[turning].op == Op::Div &&
+            own == graph.arg(turning, 0) &&
+            written(graph.arg(step, 1), component) == graph.arg(turning, 1));
 }
 
 bool Border::is_power_of_two(NodeId id) const {
@@ -215,10 +222,17 @@ NodeId Border::unknown_of(NodeId step, int component, int depth) {
     const double offset = group.is_angle ? whole_offset(step, args) : 0;
     if (group.is_angle) key[1] = args[0].index;
     const auto [it, fresh] = unknown.try_emplace(key);
-    if (fresh)
+    if (fresh) {
         it->second = rounds[graph[step].op] ? graph.make(Op::ToFloat, ir::Type::Float,
                                                          {graph.fresh_var(ir::Type::Int)})
                                             : graph.fresh_var(ir::Type::Float);
+        const auto width =
+            graph[step].op == Op::Mod ? graph.as_number(args[1]) : std::optional(1.0);
+        if (graph[step].op == Op::Atan2)
+            ranges[it->second] = {-3.15, 3.15};
+        else if (!rounds[graph[step].op] && width) // with both ends, where limits are
+            ranges[it->second] = {std::min(*width, 0.0), std::max(*width, 0.0)};
+    }
     return offset != 0 ? graph.add(it->second, graph.number(offset)) : it->second;
 }
 
@@ -267,6 +281,35 @@ std::optional<int> Border::sign_of_count(NodeId count) {
     if (all.lo > 0) return 1;
     if (all.hi < 0) return -1;
     met.thresholds.push_back(-n / j);
+    return {};
+}
+
+Interval Border::range_of(NodeId id) const {
+    if (const auto number = graph.as_number(id)) return *number;
+    if (const auto it = ranges.find(id); it != ranges.end()) return it->second;
+    constexpr ir::OpSet known{Op::Add, Op::Sub, Op::Mul, Op::Neg, Op::Abs, Op::Min, Op::Max};
+    const Op op = graph[id].op;
+    if (!known[op] || graph[id].type != ir::Type::Float) return Interval::everything();
+    const Interval a = range_of(graph.arg(id, 0)),
+                   b = graph[id].count > 1 ? range_of(graph.arg(id, 1)) : a;
+    return ranges[id] = op == Op::Add   ? a + b
+                        : op == Op::Sub ? a - b
+                        : op == Op::Mul ? a * b
+                        : op == Op::Neg ? -a
+                        : op == Op::Abs ? abs(a)
+                        : op == Op::Min ? min(a, b)
+                                        : max(a, b);
+}
+
+std::optional<NodeId> Border::outermost(Op extreme, NodeId a, NodeId b) const {
+    constexpr double rounding = 1e-13;
+    const Interval of_a = range_of(a), of_b = range_of(b);
+    const auto below = [&](const Interval &x, const Interval &y) {
+        return std::isfinite(x.hi) && std::isfinite(y.lo) &&
+               x.hi - y.lo <= rounding * std::max(std::fabs(x.hi), std::fabs(y.lo));
+    };
+    if (below(of_a, of_b)) return extreme == Op::Max ? b : a;
+    if (below(of_b, of_a)) return extreme == Op::Max ? a : b;
     return {};
 }
 

@@ -109,6 +109,7 @@ struct Border {
     const NodeId whole, little, little_angle, radius;      // K; how far from the border; by which
                                                            // angle; how far from an axis
     std::map<std::vector<std::uint32_t>, NodeId> &unknown; // by op and arguments, of all sides
+    std::map<NodeId, Interval> &ranges;                    // … of those that have an end
     const bool half;
     const Side side;
     const Counts &counts;
@@ -158,6 +159,10 @@ struct Border {
     // The sign of j K + n, where that is known of K.
     std::optional<int> sign_of_count(NodeId count);
     bool reads_little(NodeId id) const;
+    // What a scalar is between, made of numbers and unknown steps; nothing is known of the point.
+    Interval range_of(NodeId id) const;
+    // The first extreme's argument that is never beyond the other, but for rounding.
+    std::optional<NodeId> outermost(Op extreme, NodeId a, NodeId b) const;
 };
 
 } // namespace fathom::proof

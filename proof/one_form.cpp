@@ -249,6 +249,8 @@ std::optional<NodeId> Canonical::decided(const ir::Node &node, const std::vector
     if (type != ir::Type::Float && type != ir::Type::Int) return {};
     const auto number = [&](NodeId id) { return type == ir::Type::Int ? as_float(id) : id; };
     const auto sign = border->sign_of_count(graph.sub(number(args[0]), number(args[1])));
+    if (!sign && extremes[node.op] && type == ir::Type::Float)
+        return border->outermost(node.op, args[0], args[1]);
     if (!sign) return {};
     if (node.op == Op::Min) return args[*sign <= 0 ? 0 : 1];
     if (node.op == Op::Max) return args[*sign >= 0 ? 0 : 1];
