@@ -1,7 +1,11 @@
-// The subset of NRRD (teem.sourceforge.net/nrrd/format.html) that a grid of distances needs:
-// attached data, three dimensions, float or double, raw or ascii encoding.
+// Grids of values. Of NRRD (teem.sourceforge.net/nrrd/format.html) what a solid needs: attached data,
+// three dimensions, numbers of any type, raw, gzip or ascii encoding, axes along x, y and z.
+#include "driver/grid.h"
+
 #include "base/text.h"
-#include "driver/image.h"
+#include "driver/vdb/vdb.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
@@ -11,10 +15,15 @@
 #include <utility>
 #include <vector>
 
+#include <zlib.h>
+
 namespace fathom::driver {
 namespace {
 
-constexpr std::size_t max_values = std::size_t{1} << 26;
+// Of one grid, whatever the memory: places in it are counted by ints.
+constexpr std::uint64_t max_values = std::uint64_t{1} << 30;
+
+LoadError no_grid(std::string why) { return {LoadError::Reason::Unreadable, std::move(why)}; }
 
 std::string_view trimmed(std::string_view text) {
     while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
@@ -73,16 +82,20 @@ void read_place(Header &header, std::string_view field, std::string_view value) 
     } else if (field == "space directions") {
         bool straight = numbers.size() == 9;
         for (std::size_t i = 0; straight && i < 9; ++i) {
-            if (i % 4 == 0)
+            if (i % 4 == 0) {
                 header.spacings[i / 4] = numbers[i];
-            else
+                straight = numbers[i] > 0;
+            } else {
                 straight = numbers[i] == 0;
+            }
         }
         if (!straight)
-            header.error = "an NRRD header whose `space directions` are not along x, y and z";
+            header.error = "an NRRD header whose `space directions` are not along x, y and z, "
+                           "upward: resample the grid along the axes, and turn the shape by "
+                           "`rotate`";
     }
     for (double spacing : header.spacings)
-        if (!(spacing > 0 && std::isfinite(spacing)))
+        if (header.error.empty() && !(spacing > 0 && std::isfinite(spacing)))
             header.error = "an NRRD header with a spacing that is not above 0";
 }
 
@@ -109,7 +122,10 @@ Header read_header(std::string_view &bytes) {
         read_place(header, field, value);
         if (!header.error.empty()) return header;
         if (field == "data file" || field == "datafile")
-            header.error = "an NRRD header whose data is elsewhere";
+            header.error =
+                "an NRRD header whose data is elsewhere: write both into one file (.nrrd)";
+        if ((field == "line skip" || field == "byte skip") && parse_number(value) != 0.0)
+            header.error = fmt::format("an NRRD header with a `{}`: write the file without", field);
         if (field == "sizes")
             for (std::size_t &size : header.sizes) {
                 double number = parse_number(next_word(value)).value_or(0);
@@ -118,69 +134,159 @@ Header read_header(std::string_view &bytes) {
     }
 }
 
-template <class Float> Float read_raw(const char *at, bool swap) {
-    std::array<char, sizeof(Float)> raw;
+// A number of `Number` at `at`, as a float; its bytes the other way round where `swap`.
+template <class Number> float read_raw(const char *at, bool swap) {
+    std::array<char, sizeof(Number)> raw;
     std::memcpy(raw.data(), at, raw.size());
     if (swap) std::reverse(raw.begin(), raw.end());
-    return std::bit_cast<Float>(raw);
+    return static_cast<float>(std::bit_cast<Number>(raw));
 }
 
-} // namespace
+struct NumberType {
+    std::size_t width = 0; // bytes
+    float (*read)(const char *at, bool swap) = nullptr;
+};
+template <class Number> constexpr NumberType type_of() {
+    return {sizeof(Number), read_raw<Number>};
+}
 
-std::variant<ir::GridData, LoadError> decode_grid(std::string_view bytes, Room &room) {
-    auto fail = [](std::string why) {
-        return LoadError{LoadError::Reason::Unreadable, std::move(why)};
+// By all the names that the format has for one.
+std::optional<NumberType> number_type(std::string_view name) {
+    using Names = std::vector<std::string_view>;
+    static const std::vector<std::pair<Names, NumberType>> types{
+        {{"signed char", "int8", "int8_t"}, type_of<std::int8_t>()},
+        {{"uchar", "unsigned char", "uint8", "uint8_t"}, type_of<std::uint8_t>()},
+        {{"short", "short int", "signed short", "signed short int", "int16", "int16_t"},
+         type_of<std::int16_t>()},
+        {{"ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"},
+         type_of<std::uint16_t>()},
+        {{"int", "signed int", "int32", "int32_t"}, type_of<std::int32_t>()},
+        {{"uint", "unsigned int", "uint32", "uint32_t"}, type_of<std::uint32_t>()},
+        {{"longlong", "long long", "long long int", "signed long long", "signed long long int",
+          "int64", "int64_t"},
+         type_of<std::int64_t>()},
+        {{"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"},
+         type_of<std::uint64_t>()},
+        {{"float"}, type_of<float>()},
+        {{"double"}, type_of<double>()}};
+    for (const auto &[names, type] : types)
+        if (std::find(names.begin(), names.end(), name) != names.end()) return type;
+    return std::nullopt;
+}
+
+// The first `count` bytes that `packed` (gzip) holds, or fewer where there are fewer.
+std::string unpacked(std::string_view packed, std::size_t count) {
+    std::string bytes(count, '\0');
+    z_stream stream{};
+    constexpr int gzip = 16 + MAX_WBITS;
+    if (inflateInit2(&stream, gzip) != Z_OK) return {};
+    std::size_t read = 0, made = 0;
+    const auto piece = [](std::size_t left) {
+        return static_cast<uInt>(std::min<std::size_t>(left, std::size_t{1} << 30));
     };
-    if (!bytes.starts_with("NRRD000")) return fail("not an NRRD grid");
-    Header header = read_header(bytes);
-    if (!header.error.empty()) return fail(header.error);
-    bool doubles = header.type == "double";
-    if (!doubles && header.type != "float")
-        return fail("an NRRD grid whose `type` is neither `float` nor `double`");
-    if (header.dimension != 3) return fail("an NRRD grid that has not three dimensions");
+    int state = Z_OK;
+    while (state == Z_OK && made < count) {
+        const uInt in = piece(packed.size() - read), out = piece(count - made);
+        stream.next_in = reinterpret_cast<Bytef *>(const_cast<char *>(packed.data() + read));
+        stream.avail_in = in;
+        stream.next_out = reinterpret_cast<Bytef *>(bytes.data() + made);
+        stream.avail_out = out;
+        state = inflate(&stream, Z_NO_FLUSH); // Z_BUF_ERROR where nothing is left to read
+        read += in - stream.avail_in;
+        made += out - stream.avail_out;
+    }
+    inflateEnd(&stream);
+    bytes.resize(made);
+    return bytes;
+}
+
+std::variant<ir::GridData, LoadError> decode_nrrd(std::string_view bytes, Room &room) {
+    const Header header = read_header(bytes);
+    if (!header.error.empty()) return no_grid(header.error);
+    const std::optional<NumberType> type = number_type(header.type);
+    if (!type)
+        return no_grid(fmt::format(
+            "an NRRD grid whose `type` is `{}`, and not `float`, `double` or one of integers "
+            "(`uint8`, `int16`, `uint16`, …)",
+            header.type));
+    if (header.dimension != 3) return no_grid("an NRRD grid that has not three dimensions");
     for (std::size_t size : header.sizes)
         if (size == 0)
-            return fail("an NRRD grid whose `sizes` are not three numbers from 2 to 4096");
-    std::size_t count = header.sizes[0] * header.sizes[1] * header.sizes[2];
-    if (count > max_values) return fail("an NRRD grid of more than 64 million values");
-    if (count * sizeof(float) > room.bytes)
-        return LoadError{LoadError::Reason::TooLarge, "takes more memory than is left"};
-    if (count / 16 > room.steps)
-        return LoadError{LoadError::Reason::TooMuchWork, "takes more work than is left"};
-
+            return no_grid("an NRRD grid whose `sizes` are not three numbers from 2 to 4096");
+    const bool raw = header.encoding == "raw";
+    const bool packed = header.encoding == "gzip" || header.encoding == "gz";
+    const bool words =
+        header.encoding == "ascii" || header.encoding == "text" || header.encoding == "txt";
+    if (!raw && !packed && !words)
+        return no_grid(
+            fmt::format("an NRRD grid whose `encoding` is `{}`, and not `raw`, `gzip` or `ascii`",
+                        header.encoding));
+    if (type->width > 1 && !words && header.endian != "little" && header.endian != "big")
+        return no_grid("an NRRD grid whose `endian` is neither `little` nor `big`");
+    const std::size_t count = header.sizes[0] * header.sizes[1] * header.sizes[2];
     ir::GridData grid;
+    if (auto wrong = make_place({header.sizes[0], header.sizes[1], header.sizes[2]},
+                                packed ? count * type->width : 0, room, grid))
+        return *wrong;
     for (std::size_t i = 0; i < 3; ++i) {
-        grid.size[i] = static_cast<int>(header.sizes[i]);
         const double extent = header.spacings[i] * static_cast<double>(header.sizes[i] - 1);
         grid.lo[i] = header.origin ? (*header.origin)[i] : -extent / 2;
         grid.hi[i] = grid.lo[i] + extent;
     }
-    if (header.encoding == "raw") {
-        std::size_t width = doubles ? sizeof(double) : sizeof(float);
-        if (bytes.size() < count * width)
-            return fail("an NRRD grid with fewer values than its `sizes` say");
-        bool swap = (header.endian == "big") != (std::endian::native == std::endian::big);
-        grid.values.reserve(count);
-        for (std::size_t i = 0; i < count; ++i)
-            grid.values.push_back(
-                doubles ? static_cast<float>(read_raw<double>(bytes.data() + i * width, swap))
-                        : read_raw<float>(bytes.data() + i * width, swap));
-    } else if (header.encoding == "ascii" || header.encoding == "text" ||
-               header.encoding == "txt") {
+    const char *too_few = "an NRRD grid with fewer values than its `sizes` say";
+    if (words) {
         for (std::size_t i = 0; i < count; ++i) {
-            std::optional<double> value = parse_number(next_word(bytes));
-            if (!value) return fail("an NRRD grid with fewer values than its `sizes` say");
+            const std::optional<double> value = parse_number(next_word(bytes));
+            if (!value) return no_grid(too_few);
             grid.values.push_back(static_cast<float>(*value));
         }
     } else {
-        return fail("an NRRD grid whose `encoding` is neither `raw` nor `ascii`");
+        std::string unpacked_bytes;
+        if (packed) bytes = unpacked_bytes = unpacked(bytes, count * type->width);
+        if (bytes.size() < count * type->width) return no_grid(too_few);
+        const bool swap = (header.endian == "big") != (std::endian::native == std::endian::big);
+        grid.values.reserve(count);
+        for (std::size_t i = 0; i < count; ++i)
+            grid.values.push_back(type->read(bytes.data() + i * type->width, swap));
     }
-    for (float value : grid.values)
-        if (!std::isfinite(value))
-            return fail("an NRRD grid with a value that is no finite number");
-    room.bytes -= count * sizeof(float);
-    room.steps -= count / 16;
+    if (auto wrong = take_grid(grid, room)) return *wrong;
     return grid;
+}
+
+} // namespace
+
+std::optional<LoadError> make_place(const std::array<std::uint64_t, 3> &size, std::size_t extra,
+                                    const Room &room, ir::GridData &grid) {
+    const double voxels =
+        static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
+    const std::string shape =
+        fmt::format("its box has {} x {} x {} values", size[0], size[1], size[2]);
+    // Not beyond what can be counted, so that a larger limit is a way out.
+    if (voxels > static_cast<double>(max_values))
+        return no_grid(shape + ", more than 1,073,741,824: crop it or make its voxels larger");
+    const std::uint64_t count = size[0] * size[1] * size[2];
+    if (count * sizeof(float) > room.bytes || extra > room.bytes - count * sizeof(float))
+        return LoadError{LoadError::Reason::TooLarge,
+                         shape + ", which take more memory than is left"};
+    if (count / 16 > room.steps)
+        return LoadError{LoadError::Reason::TooMuchWork,
+                         shape + ", which take more work than is left"};
+    for (std::size_t i = 0; i < 3; ++i) grid.size[i] = static_cast<int>(size[i]);
+    return std::nullopt;
+}
+
+std::optional<LoadError> take_grid(const ir::GridData &grid, Room &room) {
+    for (float value : grid.values)
+        if (!std::isfinite(value)) return no_grid("a grid with a value that is no finite number");
+    room.bytes -= grid.values.size() * sizeof(float);
+    room.steps -= grid.values.size() / 16;
+    return std::nullopt;
+}
+
+std::variant<ir::GridData, LoadError> decode_grid(std::string_view bytes, Room &room) {
+    if (is_vdb(bytes)) return decode_vdb(bytes, room);
+    if (bytes.starts_with("NRRD000")) return decode_nrrd(bytes, room);
+    return no_grid("neither an NRRD nor an OpenVDB grid");
 }
 
 } // namespace fathom::driver

@@ -26,8 +26,9 @@ std::variant<ir::ImageData, LoadError> decode_image(std::string_view bytes, Room
 // them than JPEG allows.
 std::string encode_jpeg(int width, int height, std::span<const std::uint8_t> rgba, int quality);
 
-// A grid of distances: NRRD, three dimensions, float or double, raw or ascii, x the fastest.
-// Takes 4 bytes a value, and a step for 16 of them.
+// A grid of values: NRRD of three dimensions, x the fastest, of floats, doubles or integers (which
+// become the nearest floats), raw, gzip or ascii; or OpenVDB (driver/vdb/vdb.h). Takes 4 bytes a
+// value, and a step for 16 of them.
 std::variant<ir::GridData, LoadError> decode_grid(std::string_view bytes, Room &room);
 
 } // namespace fathom::driver

@@ -88,7 +88,7 @@ bool Builder::foreign_statement(Index first) {
         if (kind(first + 1) == Tok::Open && kind(first + 2) == Tok::String) {
             foreign(span(first, tokens_.match[first + 1]), "a mesh cannot be brought in")
                 .help("`import \"file.sdf\"` brings another scene's names, `distance_grid(file)` a "
-                      "grid of distances (NRRD)");
+                      "grid of distances (OpenVDB, NRRD)");
             return true;
         }
         return false;

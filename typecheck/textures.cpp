@@ -340,22 +340,22 @@ static Value displace_map_call(Interpreter &ev, const CallSite &site, std::vecto
 
 // -- grids ---------------------------------------------------------------------------------------
 
-// _grid(file): [its number, the corners lo and hi, the slope of its trilinear field]
-static Value grid_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
-    auto path = want_string(ev, args[0], site.arg(0), "`distance_grid`");
-    if (!path) return poison();
-    auto index =
-        loaded<ir::GridData>(ev, ev.loader.grid, ev.scene.grids, "grid", *path, site.arg(0));
-    if (!index) return poison();
-    const ir::GridData &grid = ev.scene.grids[*index];
+// What is known of a grid's trilinear field.
+struct GridFacts {
+    double least = 0, greatest = 0;
+    double steepest = 0; // per unit of space
+};
+static GridFacts measured(const ir::GridData &grid) {
     // In a cell each partial derivative is a mean of the steps along its four edges.
     const auto [nx, ny, nz] = grid.size;
     const auto at = [&, nx = nx, ny = ny](int x, int y, int z) {
         return double(grid.values[static_cast<std::size_t>((z * ny + y) * nx + x)]);
     };
+    GridFacts out;
+    const auto [least, greatest] = std::minmax_element(grid.values.begin(), grid.values.end());
+    out.least = *least, out.greatest = *greatest;
     std::array<double, 3> spacing{};
     for (std::size_t i = 0; i < 3; ++i) spacing[i] = (grid.hi[i] - grid.lo[i]) / (grid.size[i] - 1);
-    double steepest = 0;
     for (int z = 0; z + 1 < nz; ++z)
         for (int y = 0; y + 1 < ny; ++y)
             for (int x = 0; x + 1 < nx; ++x) {
@@ -369,14 +369,87 @@ static Value grid_call(Interpreter &ev, const CallSite &site, std::vector<Value>
                         d[2] = std::max(d[2],
                                         std::fabs(at(x + i, y + j, z + 1) - at(x + i, y + j, z)));
                     }
-                steepest = std::max(
-                    steepest, std::hypot(d[0] / spacing[0], d[1] / spacing[1], d[2] / spacing[2]));
+                out.steepest =
+                    std::max(out.steepest,
+                             std::hypot(d[0] / spacing[0], d[1] / spacing[1], d[2] / spacing[2]));
             }
+    return out;
+}
+
+using Corners = std::array<std::array<double, 3>, 2>;
+
+// The box that holds what is inside: of all cells that have a corner there. `margin`: by how much a
+// value may be on the other side, for what interpolation rounds.
+static Corners inside_box(const ir::GridData &grid, double level, bool above, double margin) {
+    std::array<int, 3> first = grid.size, last{-1, -1, -1};
+    std::size_t index = 0;
+    for (int z = 0; z < grid.size[2]; ++z)
+        for (int y = 0; y < grid.size[1]; ++y)
+            for (int x = 0; x < grid.size[0]; ++x) {
+                const double value = grid.values[index++];
+                if (above ? value < level - margin : value > level + margin) continue;
+                const std::array at{x, y, z};
+                for (std::size_t i = 0; i < 3; ++i) {
+                    first[i] = std::min(first[i], at[i]);
+                    last[i] = std::max(last[i], at[i]);
+                }
+            }
+    Corners out{grid.lo, grid.hi};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double spacing = (grid.hi[i] - grid.lo[i]) / (grid.size[i] - 1);
+        // The grid's own corners stay as they are.
+        if (first[i] > 1) out[0][i] = grid.lo[i] + (first[i] - 1) * spacing;
+        if (last[i] + 2 < grid.size[i]) out[1][i] = grid.lo[i] + (last[i] + 1) * spacing;
+    }
+    return out;
+}
+
+// Where the numbers of a grid leave too little room to reckon with them.
+constexpr double largest_value = 1e30;
+
+// _grid(file, isovalue, above): [its number, the grid's corners lo and hi, the slope of its trilinear
+// field or 1 where that is 0, the corners of what is inside]
+static Value grid_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
+    auto path = want_string(ev, args[0], site.arg(0), "`distance_grid`");
+    auto level = want_scalar_node(ev, args[1], site.arg(1), "`isovalue`");
+    auto above = want_known_bool(ev, args[2], site.arg(2), "`above`");
+    if (!path || !level || !above) return poison();
+    auto index =
+        loaded<ir::GridData>(ev, ev.loader.grid, ev.scene.grids, "grid", *path, site.arg(0));
+    if (!index) return poison();
+    const ir::GridData &grid = ev.scene.grids[*index];
+    const GridFacts facts = measured(grid);
+    if (!(std::max({std::fabs(facts.least), std::fabs(facts.greatest), facts.steepest}) <
+          largest_value)) {
+        report(ev, Code::NumberRange, site.arg(0),
+               fmt::format("the grid `{}` has values from {:.6g} to {:.6g} and a slope of {:.6g}: "
+                           "these are too large to reckon with",
+                           *path, facts.least, facts.greatest, facts.steepest));
+        return poison();
+    }
+    Corners inside{grid.lo, grid.hi};
+    if (ev.scene.graph.is_constant(*level)) {
+        const double at = ev.scene.graph.constant_of(*level).value[0];
+        const double margin = 1e-6 * std::max(std::fabs(facts.least), std::fabs(facts.greatest));
+        if (*above ? facts.greatest <= at : facts.least >= at) {
+            report(ev, Code::BadArgument, site.call,
+                   fmt::format("nothing is inside: the values of the grid `{}` go from {:.6g} to "
+                               "{:.6g}, none of them is {} {:.6g}",
+                               *path, facts.least, facts.greatest, *above ? "above" : "below", at))
+                .help(
+                    fmt::format("say which value the surface has, and on which side the solid is: "
+                                "`distance_grid(\"{}\", isovalue: {:.6g}, above: true)`",
+                                *path, (facts.least + facts.greatest) / 2));
+            return poison();
+        }
+        inside = inside_box(grid, at, *above, margin);
+    }
     const auto corner = [](const std::array<double, 3> &c) {
         return vec(3, {c[0], c[1], c[2], 0});
     };
-    return list_value(
-        ev, {integer(*index), corner(grid.lo), corner(grid.hi), number(steepest * (1 + 1e-6))});
+    return list_value(ev, {integer(*index), corner(grid.lo), corner(grid.hi),
+                           number(facts.steepest > 0 ? facts.steepest * (1 + 1e-6) : 1),
+                           corner(inside[0]), corner(inside[1])});
 }
 
 // _grid_at(grid, p): its value at p, 0..1 from corner to corner
@@ -398,7 +471,7 @@ void add_texture_builtins(std::vector<Builtin> &table) {
         "whole of it, "
         "to the right and up");
     add("_displace_map", {{"s"}, {"image"}, {"amount"}, {"scale", true}}, displace_map_call, "");
-    add("_grid", {{"file"}}, grid_call, "");
+    add("_grid", {{"file"}, {"isovalue"}, {"above"}}, grid_call, "");
     add("_grid_at", {{"grid"}, {"p"}}, grid_at_call, "");
 }
 

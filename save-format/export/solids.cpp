@@ -152,6 +152,9 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
     }
     if (auto gdf = generalised(id, l, name, paint)) return gdf;
     if (name == "distance_grid") { // the file is no number: the body tells which it reads
+        for (const auto &argument : l.arguments) // the format knows distances alone
+            if (argument.first == "isovalue")
+                return otherwise(id, paint, "a grid with an isovalue");
         const auto grid = grid_below(scene_.graph, shape(bare(s.children[0])).args);
         if (!grid) return otherwise(id, paint, "this grid");
         TreeNode result = made(NodeType::ExplicitField);

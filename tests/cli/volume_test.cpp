@@ -1,9 +1,13 @@
 // `fathom volume` as scripts see it.
 #include "shell.h"
+#include "tests/support/decoded.h"
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 using Json = nlohmann::json;
 
@@ -48,6 +52,78 @@ TEST_CASE("a volume goes out as NRRD, NumPy and OpenVDB, and comes back as a sce
     folder.write("two.sdf", "sphere(1).paint(#f00) | sphere(1).translate(x: 3).paint(#00f)\n");
     CHECK(shell(folder, "fathom volume two.sdf --resolution 24 -o two.vdb").exit == 0);
     CHECK(contains(folder.read("two.vdb"), "Cd"));
+}
+
+// Numbers that the program printed.
+static std::vector<double> numbers_in(const std::string &text) {
+    std::istringstream in(text);
+    return {std::istream_iterator<double>(in), {}};
+}
+
+TEST_CASE("a level set of OpenVDB comes back as the solid that it was made of") {
+    ScratchFolder folder;
+    folder.write("ring.sdf", "torus(1, 0.3).rotate(90deg, axis: X).translate(x: 3)\n");
+    folder.write("back.sdf", "distance_grid(\"ring.vdb\")\n");
+    folder.write("junk.vdb", std::string(" BDV\0\0\0\0", 8) + "and no more");
+    folder.write("junk.sdf", "distance_grid(\"junk.vdb\")\n");
+    const bool with_vdb = FATHOM_WITH_VDB;
+    if (!with_vdb) {
+        const Result none = shell(folder, "fathom check junk.sdf");
+        CHECK(none.exit == 1);
+        CHECK(contains(none.err, "built without OpenVDB"));
+        return;
+    }
+    REQUIRE(shell(folder, "fathom volume ring.sdf --voxel 0.05 -o ring.vdb").exit == 0);
+    CHECK(shell(folder, "fathom check back.sdf").exit == 0);
+    // In the band both are the distance, but for the sampling; beyond it the level set is cut off.
+    const std::string points = " 4 0 0.2  4.35 0 0  2.7 0.7 0.1  3 1.3 0.1  3 -0.72 0.02";
+    const auto was = numbers_in(shell(folder, "fathom eval ring.sdf" + points).out);
+    const auto is = numbers_in(shell(folder, "fathom eval back.sdf" + points).out);
+    REQUIRE((was.size() >= 5 && is.size() == was.size()));
+    const std::size_t columns = was.size() / 5; // the value is the first of them
+    for (std::size_t i = 0; i < was.size(); i += columns)
+        CHECK(is[i] == Approx(was[i]).margin(0.02));
+    // The pictures frame the solid alike: few pixels differ.
+    const std::string size = " --size 96x72 -o ";
+    REQUIRE(shell(folder, "fathom render ring.sdf" + size + "ring.png").exit == 0);
+    REQUIRE(shell(folder, "fathom render back.sdf" + size + "back.png").exit == 0);
+    std::string error;
+    const auto a = fathom::test::decoded_image(folder.read("ring.png"), error);
+    const auto b = fathom::test::decoded_image(folder.read("back.png"), error);
+    REQUIRE((a && b && a->rgba.size() == b->rgba.size()));
+    std::size_t differ = 0, drawn = 0;
+    for (std::size_t k = 0; k < a->rgba.size(); k += 4) {
+        differ += std::abs(a->rgba[k] - b->rgba[k]) > 0.1f;
+        drawn += std::abs(a->rgba[k] - a->rgba[0]) > 0.1f;
+    }
+    CHECK(drawn > 500); // of 6,912
+    CHECK(differ < 150);
+
+    const auto refused = [&](const std::string &scene, const std::string &words) {
+        const Result made = shell(folder, "fathom check " + scene);
+        INFO(made.err);
+        CHECK(made.exit == 1);
+        CHECK(contains(made.err, words));
+    };
+    refused("junk.sdf", "OpenVDB: ");
+    const std::string whole = folder.read("ring.vdb");
+    folder.write("junk.vdb", whole.substr(0, whole.size() / 2));
+    refused("junk.sdf", "the file ends too early, or is broken");
+    // A byte of the head, each in turn: whatever OpenVDB makes of it, the program answers.
+    for (std::size_t i = 8; i < 700; i += 29) {
+        std::string broken = whole;
+        broken[i] = static_cast<char>(broken[i] ^ 0x7f);
+        folder.write("junk.vdb", broken);
+        const Result made = shell(folder, "fathom check junk.sdf");
+        INFO("byte " << i << ": " << made.err);
+        CHECK((made.exit == 0 || made.exit == 1));
+    }
+    // Two small balls far apart: few voxels, and a box that no memory holds.
+    folder.write("far.sdf", "sphere(0.2) | sphere(0.2).translate([60, 60, 60])\n");
+    REQUIRE(shell(folder, "fathom volume far.sdf --voxel 0.06 -o junk.vdb --certify off").exit ==
+            0);
+    refused("junk.sdf", "memory-limit");
+    refused("junk.sdf", "--limit memory=");
 }
 
 TEST_CASE("what has no volume says why, and writes nothing") {

@@ -45,7 +45,7 @@ const std::map<std::string, std::string> owners{
     {"EGL/", "render-gl/"},     {"glslang/", "backend-glsl/"}, {"spirv", "backend-glsl/"},
     {"CLI/", "cli/"},           {"jpeglib.h", "driver/"},      {"sys/inotify.h", "driver/"},
     {"pybind11/", "bindings/"}, {"openexr", "cli/"},           {"fast_float/", "base/"},
-    {"openvdb/", "api/"},
+    {"openvdb/", "driver/"},
 };
 // Seen by one file alone.
 const Names lonely{"tao/", "CLI/", "openexr", "fast_float/", "sys/inotify.h"};

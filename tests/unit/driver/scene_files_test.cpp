@@ -149,6 +149,54 @@ TEST_CASE("a grid is read from raw and from ascii, and a broken one is refused")
                                error));
 }
 
+TEST_CASE("a grid of integers is read in both orders of bytes, and a broken one is refused") {
+    std::string error;
+    const std::string head = "NRRD0004\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n";
+    const auto first = [&](const std::string &text) {
+        const auto grid = test::decoded_grid(text, error);
+        INFO(error);
+        REQUIRE(grid);
+        return grid->values[0];
+    };
+    const std::string bytes = "\xff\xfe" + std::string(14, '\1');
+    CHECK(first(head + "type: uchar\n\n" + bytes) == 255);
+    CHECK(first(head + "type: signed char\n\n" + bytes) == -1);
+    CHECK(first(head + "type: unsigned short\nendian: little\n\n" + bytes) == 0xfeff);
+    CHECK(first(head + "type: uint16\nendian: big\n\n" + bytes) == 0xfffe);
+    CHECK(first(head + "type: short\nendian: big\n\n" + bytes) == -2);
+    const std::string zeros(62, '\0');
+    CHECK(first(head + "type: int\nendian: big\n\n" + bytes + zeros) == -130815);
+    CHECK(first(head + "type: uint64\nendian: little\n\n" + "\1\1" + zeros) == 257);
+    const auto refused = [&](const std::string &text, const std::string &words) {
+        error.clear();
+        CHECK_FALSE(test::decoded_grid(text, error));
+        INFO(error);
+        CHECK(error.find(words) != error.npos);
+    };
+    refused(head + "type: block\n\n" + bytes, "whose `type` is `block`");
+    refused(head + "type: short\nendian: middle\n\n" + bytes, "neither `little` nor `big`");
+    refused(head + "type: short\n\n" + bytes.substr(1), "fewer values");
+    refused(head + "type: uchar\nbyte skip: 3\n\n" + bytes, "`byte skip`");
+    refused(head + "type: uchar\ndata file: other.raw\n\n", "one file");
+    refused(head + "type: uchar\nspace directions: (0,1,0) (1,0,0) (0,0,1)\n\n" + bytes,
+            "`rotate`");
+    refused("NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: bzip2\n\n" + bytes,
+            "whose `encoding` is `bzip2`");
+    const std::string packed =
+        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: gzip\n\n";
+    refused(packed + "no gzip at all", "fewer values");
+    refused(packed, "fewer values");
+    refused("PK\3\4", "neither an NRRD nor an OpenVDB grid");
+    // More than any limit allows, and so much that only a limit forbids it.
+    refused("NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4096 4096 4096\n\n", "crop it");
+    typecheck::Room room{std::size_t{640} << 20, 20'000'000, 0};
+    const auto large =
+        driver::decode_grid("NRRD0004\ntype: uchar\ndimension: 3\nsizes: 1000 1000 1000\n\n", room);
+    CHECK(std::get<LoadError>(large).reason == LoadError::Reason::TooLarge);
+    CHECK(std::get<LoadError>(large).why ==
+          "its box has 1000 x 1000 x 1000 values, which take more memory than is left");
+}
+
 // A progressive JPEG of one component whose every block is empty, with `scans` scans of 12 bytes
 // each that say nothing more (ITU T.81, G).
 static std::string scanned_jpeg(int side, int scans) {

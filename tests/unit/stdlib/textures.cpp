@@ -184,7 +184,7 @@ TEST_CASE("wrong images are errors where they are named", "[textures]") {
              {"implicit(p => length(p) - 1).paint(material(texture: image(\"white.png\")))",
               "has none"},
              {"distance_grid(\"missing.nrrd\")", "no such file"},
-             {"distance_grid(\"white.png\")", "not an NRRD grid"}}) {
+             {"distance_grid(\"white.png\")", "neither an NRRD nor an OpenVDB grid"}}) {
         INFO(c.text);
         const driver::Compilation made =
             driver::compile_text("test.sdf", c.text, folder.path(), {});
@@ -227,4 +227,73 @@ TEST_CASE("a grid of distances is a solid of its own size, place and slope", "[t
     CHECK(over < 0.02); // of the sampling
     CHECK(under < 1.2); // far away it is still a long step
     CHECK(at(field, {2, 0, 0}) > 0.8);
+}
+
+TEST_CASE("an isovalue makes a solid of any values, with bound 1, and the solid is framed",
+          "[textures]") {
+    const ScratchFolder folder;
+    // a scan: 3,000 in the middle of a ball and 400 less for each unit, on voxels of 0.5 x 0.5 x 1
+    std::string text =
+        "NRRD0004\ntype: uint16\ndimension: 3\nsizes: 40 40 24\nencoding: ascii\nspace "
+        "directions: (0.5,0,0) (0,0.5,0) (0,0,1)\nspace origin: (100,-10,-12)\n\n";
+    const Point middle{108, 0, 0};
+    for (int z = 0; z < 24; ++z)
+        for (int y = 0; y < 40; ++y)
+            for (int x = 0; x < 40; ++x)
+                text += fmt::format(
+                    "{}\n",
+                    std::max(0.0, std::round(3000 - 400 * norm(Point{100 + 0.5 * x, -10 + 0.5 * y,
+                                                                     -12.0 + z} -
+                                                               middle))));
+    folder.write("ct.nrrd", text);
+    const std::string call = "distance_grid(\"ct.nrrd\", isovalue: 1800, above: true)";
+    for (const std::string &scene :
+         {call, std::string("param level = 1800 in 1000..2000\n"
+                            "distance_grid(\"ct.nrrd\", isovalue: level, above: true)")}) {
+        INFO(scene);
+        Field field(scene, folder.path().string());
+        INFO(field.said());
+        REQUIRE(field.good()); // a ball of radius 3
+        CHECK(at(field, middle) < -1.5);
+        CHECK(surface_along(field, {1, 0, 0}, 108, 120) == Approx(111).margin(0.1));
+        Numbers numbers(7);
+        double over = 0, steepest = 0, wrong = 0;
+        for (int i = 0; i < 6000; ++i) {
+            const Point p = middle + numbers.in(-14, 14), q = p + 0.3 * numbers.in(-1, 1);
+            const double d = at(field, p), truth = norm(p - middle) - 3;
+            over = std::max(over, std::abs(d) - std::abs(truth));
+            steepest = std::max(steepest, (std::abs(d - at(field, q)) - 8e-6) / norm(p - q));
+            if (std::abs(truth) > 0.2 && (d < 0) != (truth < 0)) ++wrong;
+        }
+        CHECK(wrong == 0);
+        CHECK(over < 0.1); // of the sampling
+        CHECK(steepest <= 1.00001);
+        CHECK(steepest > 0.5); // else the bound says nothing
+    }
+    // the other side: the box without the ball
+    Field outside("distance_grid(\"ct.nrrd\", isovalue: 1800)", folder.path().string());
+    INFO(outside.said());
+    REQUIRE(outside.good());
+    CHECK(at(outside, middle) > 1.5);
+    CHECK(at(outside, {101, 8, 10}) < 0);
+
+    const driver::Compilation made = driver::compile_text("test.sdf", call, folder.path(), {});
+    REQUIRE(made.good());
+    for (std::size_t i = 0; i < 3; ++i) { // the ball, with no more than two voxels about it
+        CHECK(made.scene.framed.lo[i] <= middle[i] - 3 + 0.1);
+        CHECK(made.scene.framed.lo[i] >= middle[i] - 5.1);
+        CHECK(made.scene.framed.hi[i] >= middle[i] + 3 - 0.1);
+        CHECK(made.scene.framed.hi[i] <= middle[i] + 5.1);
+    }
+
+    for (const auto &[wrong, words] : std::vector<std::pair<std::string, std::string>>{
+             {"distance_grid(\"ct.nrrd\")", "none of them is below 0"},
+             {"distance_grid(\"ct.nrrd\", isovalue: 4000, above: true)",
+              "none of them is above 4000"},
+             {"distance_grid(\"ct.nrrd\", above: true)", "say both"}}) {
+        INFO(wrong);
+        const driver::Compilation bad = driver::compile_text("test.sdf", wrong, folder.path(), {});
+        REQUIRE(bad.diagnostics.errors() == 1);
+        CHECK(bad.diagnostics.sorted()[0].message.find(words) != std::string::npos);
+    }
 }

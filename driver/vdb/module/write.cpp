@@ -1,6 +1,6 @@
 // The module libfathom-vdb: writes OpenVDB files by OpenVDB, which takes longer to load than most of
 // what the library does.
-#include "grid.h"
+#include "interface.h"
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
