@@ -105,7 +105,8 @@ LoadError broken(std::string why) {
 }
 
 std::variant<ir::GridData, LoadError> answered(int from, const Room &room) {
-    const char *ended = "the file is broken: OpenVDB stopped at it";
+    const char *ended =
+        "the file is broken, or takes more than 10 s to read: OpenVDB stopped at it";
     FathomVdbAnswer answer{};
     if (read_all(from, &answer, sizeof answer) != sizeof answer) return broken(ended);
     if (answer.good == 0) {

@@ -80,6 +80,8 @@ void read_place(const GridBase &grid, openvdb::Vec3d &origin, openvdb::Vec3d &sp
             "shape by `rotate`");
 }
 
+constexpr rlim_t most_seconds = 10; // of processor time, whatever the file says
+
 // Where answers go. OpenVDB's warnings go to the standard output, which is another file then.
 std::FILE *answers = nullptr;
 
@@ -139,6 +141,7 @@ int main(int count, char **arguments) {
     if (!answers || dup2(2, 1) < 0) return 1;
     limit(RLIMIT_CORE, 0);
     if (most > 0) limit(RLIMIT_AS, most);
+    limit(RLIMIT_CPU, most_seconds);
     try {
         const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
         openvdb::initialize();
