@@ -126,7 +126,7 @@ def main():
     page.append("\n## Built in\n\nWhat the language itself cannot say. `fathom doc NAME` prints these, too.\n")
     listed = subprocess.run([program, "doc"], check=True, capture_output=True, text=True).stdout
     own = {("dfmodel." if stem == "dfmodel" else "") + name for stem, _ in files for name, _, _ in entries(root / "stdlib" / f"{stem}.sdf")}
-    for line in sorted(listed.splitlines()):
+    for line in sorted(line for line in listed.splitlines() if line.startswith("  ")):  # others name groups
         name = line.split()[0]
         if name in own:
             continue
