@@ -1,6 +1,7 @@
 // Our shaders against plain tracers written by hand: by_hand/NAME.frag is the field of
-// scenes/NAME.sdf as one writes it for Shadertoy, by_hand/tracer.glsl what goes round it. Frames of
-// both in turn on the driver at hand, once both meet the same solid.
+// scenes/NAME.sdf as one writes it for Shadertoy, by_hand/solids.glsl what several of them are made
+// of, by_hand/tracer.glsl what goes round it. Frames of both in turn on the driver at hand, once both
+// meet the same solid.
 #include "bench/measure.h"
 
 #include "backend-glsl/emit.h"
@@ -60,7 +61,9 @@ std::variant<gl::Program, gl::ProgramError> by_hand(const std::string &name, con
     glsl::Output output;
     output.text = "#version 330 core\n";
     if (march_alone) output.text += "#define MARCH_ALONE\n";
-    output.text += text_of(folder + name + ".frag") + text_of(folder + "tracer.glsl");
+    for (const std::string &part :
+         {std::string("solids.glsl"), name + ".frag", std::string("tracer.glsl")})
+        output.text += text_of(folder + part);
     return gl::Program::build(output, scene);
 }
 

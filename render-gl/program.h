@@ -90,8 +90,8 @@ class Program {
     void name_units(unsigned program) const;
 
     unsigned program_ = 0, marks_ = 0;
-    // A driver on the processor takes three times as long to compile a text that keeps rays, and a
-    // third longer to draw by it; few pictures need it. There `program_` begins rays alone, and this is
+    // A driver on the processor takes longer to compile a text that keeps rays, and a third
+    // longer to draw by it; few pictures need it. There `program_` begins rays alone, and this is
     // made of the text when it is first wanted. No text: `program_` does both.
     std::string keeping_text_;
     mutable unsigned keeping_ = 0;

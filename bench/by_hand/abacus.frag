@@ -1,24 +1,6 @@
 #define REACH 5.0
 #define COLORED
 
-float box(vec3 p, vec3 b) {
-    vec3 q = abs(p) - b;
-    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0);
-}
-
-float cylinder(vec3 p, float r, float h) {
-    vec2 side = vec2(length(p.xz) - r, abs(p.y) - h);
-    return length(max(side, 0.0)) + min(max(side.x, side.y), 0.0);
-}
-
-// Along y, from radius a at -h to b at h.
-float capped_cone(vec3 p, float a, float b, float h) {
-    vec2 q = vec2(length(p.xz), p.y), slant = vec2(b - a, 2.0 * h);
-    vec2 cap = vec2(q.x - min(q.x, q.y < 0.0 ? a : b), abs(q.y) - h);
-    vec2 side = q - vec2(b, h) + slant * clamp(dot(vec2(b, h) - q, slant) / dot(slant, slant), 0.0, 1.0);
-    return (side.x < 0.0 && cap.y < 0.0 ? -1.0 : 1.0) * sqrt(min(dot(cap, cap), dot(side, side)));
-}
-
 vec3 rod(vec3 p) { return vec3(p.x - 0.65 * clamp(round(p.x / 0.65), -6.0, 6.0), p.yz); }
 
 float bead(vec3 p) { return capped_cone(vec3(p.x, abs(p.y) - 0.08, p.z), 0.3, 0.12, 0.08); }

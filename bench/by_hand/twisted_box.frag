@@ -1,10 +1,5 @@
 #define REACH 1.25
 #define STEP 0.5
-float box(vec3 p, vec3 b) {
-    vec3 q = abs(p) - b;
-    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0);
-}
-
 // Turned by 3 radians a unit.
 float map(vec3 p) {
     float c = cos(3.0 * p.y), s = sin(3.0 * p.y);
