@@ -239,15 +239,16 @@ typecheck::Loader loader_of(const FileProvider &provider) {
         if (auto *error = std::get_if<LoadError>(&bytes)) return *error;
         return typecheck::LoadedText{name, name, std::move(std::get<std::string>(bytes))};
     };
-    const auto asset = [=]<class Data>(std::variant<Data, LoadError> (*decode)(std::string_view,
-                                                                               typecheck::Room &)) {
-        return [=](const std::string &path, const std::string &from,
-                   typecheck::Room &room) -> std::variant<Data, LoadError> {
+    const auto asset = [=]<class Data, class... More>(std::variant<Data, LoadError> (*decode)(
+                           std::string_view, typecheck::Room &, const More &...)) {
+        return [=](const std::string &path, const std::string &from, typecheck::Room &room,
+                   const More &...more) -> std::variant<Data, LoadError> {
             const auto file = identity(path, from);
             if (auto *error = std::get_if<LoadError>(&file)) return *error;
             const auto bytes = bytes_of(std::get<std::string>(file));
             if (auto *error = std::get_if<LoadError>(&bytes)) return *error;
-            std::variant<Data, LoadError> data = decode(std::get<std::string>(bytes), room);
+            std::variant<Data, LoadError> data =
+                decode(std::get<std::string>(bytes), room, more...);
             if (auto *made = std::get_if<Data>(&data)) made->name = path;
             return data;
         };

@@ -283,8 +283,11 @@ std::optional<LoadError> take_grid(const ir::GridData &grid, Room &room) {
     return std::nullopt;
 }
 
-std::variant<ir::GridData, LoadError> decode_grid(std::string_view bytes, Room &room) {
-    if (is_vdb(bytes)) return decode_vdb(bytes, room);
+std::variant<ir::GridData, LoadError> decode_grid(std::string_view bytes, Room &room,
+                                                  const std::string &name) {
+    if (is_vdb(bytes)) return decode_vdb(bytes, room, name);
+    if (!name.empty())
+        return no_grid("not an OpenVDB file, whose grids have names: leave `grid` out");
     if (bytes.starts_with("NRRD000")) return decode_nrrd(bytes, room);
     return no_grid("neither an NRRD nor an OpenVDB grid");
 }

@@ -27,8 +27,9 @@ std::variant<ir::ImageData, LoadError> decode_image(std::string_view bytes, Room
 std::string encode_jpeg(int width, int height, std::span<const std::uint8_t> rgba, int quality);
 
 // A grid of values: NRRD of three dimensions, x the fastest, of floats, doubles or integers (which
-// become the nearest floats), raw, gzip or ascii; or OpenVDB (driver/vdb/vdb.h). Takes 4 bytes a
-// value, and a step for 16 of them.
-std::variant<ir::GridData, LoadError> decode_grid(std::string_view bytes, Room &room);
+// become the nearest floats), raw, gzip or ascii; or OpenVDB (driver/vdb/vdb.h), which may have
+// several, of which `name` says one. Takes 4 bytes a value, and a step for 16 of them.
+std::variant<ir::GridData, LoadError> decode_grid(std::string_view bytes, Room &room,
+                                                  const std::string &name = {});
 
 } // namespace fathom::driver

@@ -93,23 +93,23 @@ typecheck::Loader SceneFiles::loader() {
         return std::get<Found>(found).file.string();
     };
     // Images and grids differ in the decoder alone.
-    auto asset =
-        [this]<class Data>(std::variant<Data, LoadError> (*decode)(std::string_view, Room &)) {
-            return [this, decode](const std::string &path, const std::string &from,
-                                  Room &room) -> std::variant<Data, LoadError> {
-                auto found = find(path, from);
-                if (auto *error = std::get_if<LoadError>(&found)) return *error;
-                const fs::path file = std::get<Found>(found).file;
-                if (stamp_of(file).size > room.bytes)
-                    return LoadError{LoadError::Reason::TooLarge, "takes more memory than is left"};
-                std::string error;
-                std::optional<std::string> bytes = read_file(file, room.bytes, error);
-                if (!bytes) return unreadable(error);
-                std::variant<Data, LoadError> data = decode(*bytes, room);
-                if (auto *made = std::get_if<Data>(&data)) made->name = path;
-                return data;
-            };
+    auto asset = [this]<class Data, class... More>(std::variant<Data, LoadError> (*decode)(
+                     std::string_view, Room &, const More &...)) {
+        return [this, decode](const std::string &path, const std::string &from, Room &room,
+                              const More &...more) -> std::variant<Data, LoadError> {
+            auto found = find(path, from);
+            if (auto *error = std::get_if<LoadError>(&found)) return *error;
+            const fs::path file = std::get<Found>(found).file;
+            if (stamp_of(file).size > room.bytes)
+                return LoadError{LoadError::Reason::TooLarge, "takes more memory than is left"};
+            std::string error;
+            std::optional<std::string> bytes = read_file(file, room.bytes, error);
+            if (!bytes) return unreadable(error);
+            std::variant<Data, LoadError> data = decode(*bytes, room, more...);
+            if (auto *made = std::get_if<Data>(&data)) made->name = path;
+            return data;
         };
+    };
     return {identity, text, asset(decode_image), asset(decode_grid)};
 }
 

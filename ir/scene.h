@@ -164,10 +164,11 @@ struct ImageData {
 // Distances at the corners of a lattice: the first sample stands at `lo`, the last at `hi`, in the
 // space of the shape.
 struct GridData {
-    std::string name;
+    std::string name; // of the file
     std::array<int, 3> size{};
     std::vector<float> values;
     std::array<double, 3> lo{-0.5, -0.5, -0.5}, hi{0.5, 0.5, 0.5};
+    std::string part{}; // the grid's name in the file, where the text says one
 };
 
 // A whole scene: shapes and expressions, and after lowering its functions.

@@ -50,8 +50,9 @@ struct Loader {
     std::function<std::variant<ir::ImageData, LoadError>(const std::string &path,
                                                          const std::string &from, Room &room)>
         image;
-    std::function<std::variant<ir::GridData, LoadError>(const std::string &path,
-                                                        const std::string &from, Room &room)>
+    // `name` of one grid of the file; empty: the only one.
+    std::function<std::variant<ir::GridData, LoadError>(
+        const std::string &path, const std::string &from, Room &room, const std::string &name)>
         grid;
 };
 

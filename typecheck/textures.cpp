@@ -52,13 +52,14 @@ static const std::string &naming_file(const Interpreter &ev) {
     return ev.modules[ev.current_module].identity;
 }
 
-// A file that is named twice is read once, however its name is spelled.
-template <class Data, class Load>
-static std::optional<std::uint32_t> loaded(Interpreter &ev, const Load &load,
-                                           std::vector<Data> &all, const char *what,
-                                           const std::string &path, Span place) {
+// A file that is named twice is read once, however its name is spelled; of one with several grids,
+// each. `more` is what the loader is told beside the path: the grid's name.
+template <class Data, class Load, class... More> static std::optional<std::uint32_t>
+loaded(Interpreter &ev, const Load &load, std::vector<Data> &all, const char *what,
+       const std::string &path, Span place, const More &...more) {
     const std::string from = naming_file(ev);
-    const auto named = ev.assets.try_emplace(fmt::format("{}\n{}\n{}", what, from, path), 0);
+    const std::string kind = (std::string(what) + ... + ("\n" + more));
+    const auto named = ev.assets.try_emplace(fmt::format("{}\n{}\n{}", kind, from, path), 0);
     std::uint32_t &index = named.first->second;
     if (!named.second) return index;
     const auto fail = [&](const LoadError &error) {
@@ -69,11 +70,11 @@ static std::optional<std::uint32_t> loaded(Interpreter &ev, const Load &load,
     const auto identity = ev.loader.identity(path, from);
     if (auto *error = std::get_if<LoadError>(&identity)) return fail(*error);
     const auto same =
-        ev.assets.try_emplace(fmt::format("{}\n{}", what, std::get<std::string>(identity)), 0);
+        ev.assets.try_emplace(fmt::format("{}\n{}", kind, std::get<std::string>(identity)), 0);
     if (!same.second) return index = same.first->second;
     const Room before = room_left(ev);
     Room room = before;
-    auto data = load(path, from, room);
+    auto data = load(path, from, room, more...);
     if (auto *error = std::get_if<LoadError>(&data)) {
         ev.assets.erase(same.first);
         return fail(*error);
@@ -407,16 +408,18 @@ static Corners inside_box(const ir::GridData &grid, double level, bool above, do
 // Where the numbers of a grid leave too little room to reckon with them.
 constexpr double largest_value = 1e30;
 
-// _grid(file, isovalue, above): [its number, the grid's corners lo and hi, the slope of its trilinear
+// _grid(file, isovalue, above, name): [its number, the grid's corners lo and hi, the slope of its trilinear
 // field or 1 where that is 0, the corners of what is inside]
 static Value grid_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto path = want_string(ev, args[0], site.arg(0), "`distance_grid`");
     auto level = want_scalar_node(ev, args[1], site.arg(1), "`isovalue`");
     auto above = want_known_bool(ev, args[2], site.arg(2), "`above`");
-    if (!path || !level || !above) return poison();
+    auto name = want_string(ev, args[3], site.arg(3), "`grid`");
+    if (!path || !level || !above || !name) return poison();
     auto index =
-        loaded<ir::GridData>(ev, ev.loader.grid, ev.scene.grids, "grid", *path, site.arg(0));
+        loaded<ir::GridData>(ev, ev.loader.grid, ev.scene.grids, "grid", *path, site.arg(0), *name);
     if (!index) return poison();
+    ev.scene.grids[*index].part = *name;
     const ir::GridData &grid = ev.scene.grids[*index];
     const GridFacts facts = measured(grid);
     if (!(std::max({std::fabs(facts.least), std::fabs(facts.greatest), facts.steepest}) <
@@ -471,7 +474,7 @@ void add_texture_builtins(std::vector<Builtin> &table) {
         "whole of it, "
         "to the right and up");
     add("_displace_map", {{"s"}, {"image"}, {"amount"}, {"scale", true}}, displace_map_call, "");
-    add("_grid", {{"file"}, {"isovalue"}, {"above"}}, grid_call, "");
+    add("_grid", {{"file"}, {"isovalue"}, {"above"}, {"name"}}, grid_call, "");
     add("_grid_at", {{"grid"}, {"p"}}, grid_at_call, "");
 }
 

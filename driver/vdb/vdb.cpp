@@ -40,8 +40,9 @@ std::filesystem::path companion(const char *name, std::string &why) {
         std::error_code none;
         if (!here.empty() && std::filesystem::exists(file, none)) return file;
     }
-    why = "this Fathom was built without OpenVDB: build it where libopenvdb-dev and libboost-dev "
-          "are";
+    why =
+        "this Fathom is without OpenVDB: install the package fathom-openvdb, or build Fathom where "
+        "libopenvdb-dev and libboost-dev are";
     return {};
 }
 
@@ -70,8 +71,8 @@ struct Reader {
     int answer = -1; // what it writes
 };
 
-std::optional<Reader> start(const std::string &program, std::string_view bytes,
-                            std::size_t memory) {
+std::optional<Reader> start(const std::string &program, std::string_view bytes, std::size_t memory,
+                            std::string grid) {
     std::FILE *input = std::tmpfile();
     if (!input) return std::nullopt;
     int ends[2] = {-1, -1};
@@ -85,7 +86,7 @@ std::optional<Reader> start(const std::string &program, std::string_view bytes,
         posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
         posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
         std::string name = program, most = std::to_string(memory);
-        char *const arguments[] = {name.data(), most.data(), nullptr};
+        char *const arguments[] = {name.data(), most.data(), grid.data(), nullptr};
         Reader reader;
         reader.answer = ends[0];
         if (posix_spawn(&reader.process, program.c_str(), &actions, nullptr, arguments, environ) ==
@@ -143,14 +144,15 @@ bool is_vdb(std::string_view bytes) {
     return bytes.starts_with(std::string_view(" BDV\0\0\0\0", 8));
 }
 
-std::variant<ir::GridData, LoadError> decode_vdb(std::string_view bytes, Room &room) {
+std::variant<ir::GridData, LoadError> decode_vdb(std::string_view bytes, Room &room,
+                                                 const std::string &name) {
     std::string without;
     const std::filesystem::path program = companion("fathom-read-vdb", without);
     if (program.empty())
         return LoadError{LoadError::Reason::Unreadable, without + ", or convert the file to .nrrd"};
     constexpr std::size_t own = std::size_t{512} * mebibyte, any = std::size_t(-1) / 4;
     const std::size_t memory = room.bytes < any ? own + 2 * room.bytes : 0;
-    const std::optional<Reader> reader = start(program.string(), bytes, memory);
+    const std::optional<Reader> reader = start(program.string(), bytes, memory, name);
     if (!reader) return broken("fathom-read-vdb cannot be started");
     auto grid = answered(reader->answer, room);
     close(reader->answer); // what is not wanted ends it

@@ -19,9 +19,10 @@ FathomWriteVdb vdb_writer(std::string &why);
 // Does a file begin as OpenVDB's do?
 bool is_vdb(std::string_view bytes);
 
-// The only level set of a file, or its only grid of floats or doubles, with the box of its voxels
-// made dense. Takes as much off `room` as decode_grid does; the program that reads may take twice
+// The grid of floats or doubles that is called `name` or, where that is empty, a file's only level
+// set or its only grid of these, with the box of its voxels made dense. Takes as much off `room` as decode_grid does; the program that reads may take twice
 // what is left there, and half a GiB, while it does.
-std::variant<ir::GridData, LoadError> decode_vdb(std::string_view bytes, Room &room);
+std::variant<ir::GridData, LoadError> decode_vdb(std::string_view bytes, Room &room,
+                                                 const std::string &name);
 
 } // namespace fathom::driver

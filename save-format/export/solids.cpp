@@ -157,6 +157,8 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
                 return otherwise(id, paint, "a grid with an isovalue");
         const auto grid = grid_below(scene_.graph, shape(bare(s.children[0])).args);
         if (!grid) return otherwise(id, paint, "this grid");
+        if (!scene_.grids[*grid].part.empty())
+            return otherwise(id, paint, "one grid of a file with several");
         TreeNode result = made(NodeType::ExplicitField);
         add(result, "File", yaml_word(scene_.grids[*grid].name));
         return finish(std::move(result));

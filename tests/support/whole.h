@@ -32,15 +32,15 @@ inline typecheck::Loader loader_without_files(bool with_data = false) {
     loader.image = [=](const std::string &a, const std::string &b, typecheck::Room &) {
         return missing(a, b);
     };
-    loader.grid = [=](const std::string &a, const std::string &b, typecheck::Room &) {
-        return missing(a, b);
-    };
+    loader.grid = [=](const std::string &a, const std::string &b, typecheck::Room &,
+                      const std::string &) { return missing(a, b); };
     if (!with_data) return loader;
     loader.identity = [](const std::string &name, const std::string &) { return name; };
     loader.image = [](const std::string &name, const std::string &, typecheck::Room &) {
         return ir::ImageData{name, 1, 1, {1, 1, 1, 1}};
     };
-    loader.grid = [](const std::string &name, const std::string &, typecheck::Room &) {
+    loader.grid = [](const std::string &name, const std::string &, typecheck::Room &,
+                     const std::string &) {
         return ir::GridData{name, {2, 2, 2}, {1, 1, 1, 1, 1, 1, 1, 1}};
     };
     return loader;

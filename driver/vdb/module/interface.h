@@ -29,8 +29,8 @@ struct FathomVdbBox {
     double lo[3], hi[3];
 };
 
-// The program fathom-read-vdb gets a file by its standard input and the bytes that it may take, 0
-// for any, as its argument. It answers with this and then as many floats as the size's product, x the
+// The program fathom-read-vdb gets a file by its standard input, and as its arguments the bytes that
+// it may take, 0 for any, and the name of a grid, empty for the only one. It answers with this and then as many floats as the size's product, x the
 // fastest; or, where `good` is 0, with words to the end.
 struct FathomVdbAnswer {
     std::uint64_t good;

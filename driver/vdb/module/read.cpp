@@ -43,21 +43,29 @@ bool of_numbers(const GridBase &grid) {
     return grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>();
 }
 
-// The only level set, or the only grid of numbers.
-const GridBase &wanted(const openvdb::GridPtrVec &grids) {
-    std::vector<const GridBase *> numbers, level_sets;
+// The grid of that name or, where it is empty, the only level set, or the only grid of numbers.
+const GridBase &wanted(const openvdb::GridPtrVec &grids, const std::string &name) {
+    std::vector<const GridBase *> numbers, level_sets, called;
     std::string names;
     for (const GridBase::Ptr &grid : grids) {
         if (!of_numbers(*grid)) continue;
         numbers.push_back(grid.get());
         if (grid->getGridClass() == openvdb::GRID_LEVEL_SET) level_sets.push_back(grid.get());
+        if (grid->getName() == name) called.push_back(grid.get());
         if (numbers.size() <= 8) names += (names.empty() ? "`" : ", `") + grid->getName() + "`";
+        if (numbers.size() == 9) names += ", and more";
     }
     if (numbers.empty()) throw std::runtime_error("the file has no grid of floats or doubles");
+    if (!name.empty()) {
+        if (called.size() == 1) return *called[0];
+        throw std::runtime_error((called.empty() ? "the file has no grid `" + name + "` of numbers"
+                                                 : "several grids are called `" + name + "`") +
+                                 ", those it has are " + names);
+    }
     if (level_sets.size() == 1) return *level_sets[0];
     if (numbers.size() == 1) return *numbers[0];
     throw std::runtime_error("the file has several grids of numbers (" + names +
-                             "): write one of them into a file of its own");
+                             "): name one, as by `grid: \"" + numbers[0]->getName() + "\"`");
 }
 
 // Where voxel 0 is, and how far apart voxels are along each axis.
@@ -148,7 +156,7 @@ int main(int count, char **arguments) {
         std::ios::sync_with_stdio(false);
         const openvdb::GridPtrVec grids =
             grids_in({std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()});
-        const GridBase &grid = wanted(grids);
+        const GridBase &grid = wanted(grids, count > 2 ? arguments[2] : "");
         if (grid.isType<openvdb::FloatGrid>())
             put(static_cast<const openvdb::FloatGrid &>(grid));
         else

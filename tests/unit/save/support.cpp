@@ -65,7 +65,8 @@ CheckedText check_text(std::string sdf) {
     loader.image = [](const std::string &name, const std::string &, typecheck::Room &) {
         return ir::ImageData{name, 1, 1, {1, 1, 1, 1}};
     };
-    loader.grid = [](const std::string &name, const std::string &, typecheck::Room &) {
+    loader.grid = [](const std::string &name, const std::string &, typecheck::Room &,
+                     const std::string &) {
         return ir::GridData{name, {2, 2, 2}, {1, 1, 1, 1, 1, 1, 1, 1}};
     };
     made.checked =
