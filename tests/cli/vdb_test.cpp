@@ -40,7 +40,9 @@ TEST_CASE("one of several grids of an OpenVDB file is named") {
     files.refused("distance_grid(\"two.vdb\", grid: \"smoke\")",
                   "no grid `smoke` of numbers, those it has are `density`, `heat`");
     files.refused("distance_grid(\"two.vdb\", grid: \"mist\")", "no grid `mist` of numbers");
-    files.refused("distance_grid(\"alike.vdb\", grid: \"density\")", "several grids are called");
+    files.refused("distance_grid(\"alike.vdb\", grid: \"density\")", "`density[0]`, `density[1]`");
+    CHECK(files.at("distance_grid(\"alike.vdb\", grid: \"density[1]\")", "1 0 0") ==
+          Approx(0).margin(0.01));
     const std::string small = "distance_grid(\"two.vdb\", grid: \"density\")",
                       large = "distance_grid(\"two.vdb\", grid: \"heat\")";
     CHECK(files.at(small, "0.5 0 0") == Approx(0).margin(0.01));

@@ -43,29 +43,43 @@ bool of_numbers(const GridBase &grid) {
     return grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>();
 }
 
+// What a grid is called: of several with one name each has its number too, and so has one without,
+// as OpenVDB's own programs print them.
+std::string name_of(const openvdb::GridPtrVec &grids, const GridBase &grid) {
+    const std::string name = grid.getName();
+    std::size_t before = 0, alike = 0;
+    bool seen = false;
+    for (const GridBase::Ptr &other : grids) {
+        seen = seen || other.get() == &grid;
+        if (other->getName() != name) continue;
+        ++alike;
+        before += !seen;
+    }
+    return alike == 1 && !name.empty() ? name : name + "[" + std::to_string(before) + "]";
+}
+
 // The grid of that name or, where it is empty, the only level set, or the only grid of numbers.
 const GridBase &wanted(const openvdb::GridPtrVec &grids, const std::string &name) {
-    std::vector<const GridBase *> numbers, level_sets, called;
-    std::string names;
+    std::vector<const GridBase *> numbers, level_sets;
+    std::string names, first;
     for (const GridBase::Ptr &grid : grids) {
         if (!of_numbers(*grid)) continue;
+        const std::string called = name_of(grids, *grid);
+        if (!name.empty() && called == name) return *grid;
         numbers.push_back(grid.get());
         if (grid->getGridClass() == openvdb::GRID_LEVEL_SET) level_sets.push_back(grid.get());
-        if (grid->getName() == name) called.push_back(grid.get());
-        if (numbers.size() <= 8) names += (names.empty() ? "`" : ", `") + grid->getName() + "`";
+        if (numbers.size() == 1) first = called;
+        if (numbers.size() <= 8) names += (names.empty() ? "`" : ", `") + called + "`";
         if (numbers.size() == 9) names += ", and more";
     }
     if (numbers.empty()) throw std::runtime_error("the file has no grid of floats or doubles");
-    if (!name.empty()) {
-        if (called.size() == 1) return *called[0];
-        throw std::runtime_error((called.empty() ? "the file has no grid `" + name + "` of numbers"
-                                                 : "several grids are called `" + name + "`") +
-                                 ", those it has are " + names);
-    }
+    if (!name.empty())
+        throw std::runtime_error("the file has no grid `" + name +
+                                 "` of numbers, those it has are " + names);
     if (level_sets.size() == 1) return *level_sets[0];
     if (numbers.size() == 1) return *numbers[0];
     throw std::runtime_error("the file has several grids of numbers (" + names +
-                             "): name one, as by `grid: \"" + numbers[0]->getName() + "\"`");
+                             "): name one, as by `grid: \"" + first + "\"`");
 }
 
 // Where voxel 0 is, and how far apart voxels are along each axis.
