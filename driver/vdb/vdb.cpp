@@ -35,10 +35,11 @@ std::filesystem::path folder_of_code() {
 // A file of Fathom's own, or an empty path and why there is none.
 std::filesystem::path companion(const char *name, std::string &why) {
     const std::filesystem::path here = folder_of_code();
-    for (const std::filesystem::path &file :
-         {here / name, here / "fathom" / name, here / ".." / FATHOM_LIBDIR / "fathom" / name}) {
+    for (const std::filesystem::path &folder :
+         {here, here / "fathom", here / ".." / FATHOM_LIBDIR / "fathom",
+          std::filesystem::path(FATHOM_INSTALLED)}) { // that of Python is elsewhere
         std::error_code none;
-        if (!here.empty() && std::filesystem::exists(file, none)) return file;
+        if (!here.empty() && std::filesystem::exists(folder / name, none)) return folder / name;
     }
     why =
         "this Fathom is without OpenVDB: install the package fathom-openvdb, or build Fathom where "

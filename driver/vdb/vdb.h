@@ -1,7 +1,7 @@
 // OpenVDB files. They are written by the module libfathom-vdb, which is loaded with the first of them,
 // as OpenVDB takes longer to load than most commands run; and read by the program fathom-read-vdb, as
 // OpenVDB crashes on some broken files (driver/vdb/module). Both are looked for beside the code that
-// asks, and in a folder `fathom` beside it.
+// asks, in a folder `fathom` beside it, and where they are installed.
 #pragma once
 
 #include "driver/image.h"
