@@ -28,7 +28,10 @@ std::filesystem::path folder_of_code() {
     Dl_info info{};
     if (dladdr(&mark, &info) == 0 || !info.dli_fname) return {};
     std::error_code failed;
-    const std::filesystem::path whole = std::filesystem::canonical(info.dli_fname, failed);
+    // A program that the shell found is called by its bare name.
+    const bool bare = std::string_view(info.dli_fname).find('/') == std::string_view::npos;
+    const std::filesystem::path whole =
+        std::filesystem::canonical(bare ? "/proc/self/exe" : info.dli_fname, failed);
     return failed ? std::filesystem::path() : whole.parent_path();
 }
 

@@ -64,6 +64,16 @@ TEST_CASE("one of several grids of an OpenVDB file is named") {
     CHECK(contains(saved.err, "one grid of a file with several"));
 }
 
+TEST_CASE("OpenVDB files are read by a program that the shell finds by its name") {
+    Files files;
+    files.write("fathom", "not the program\n");
+    files.write("a.sdf", "distance_grid(\"stretched.vdb\")\n");
+    const Result made =
+        shell(files, "PATH=$(dirname '" FATHOM_PROGRAM "'):$PATH env fathom check a.sdf");
+    INFO(made.err);
+    CHECK(made.exit == 0);
+}
+
 TEST_CASE("a grid of OpenVDB stands where its transform says, or is refused") {
     Files files;
     // 0.1 apart along x and z, 0.2 along y, and 5 higher.
