@@ -2,6 +2,7 @@
 
 #include "driver/files.h"
 #include "driver/grid.h"
+#include "system/system.h"
 
 #include <fmt/format.h>
 
@@ -31,7 +32,7 @@ std::filesystem::path folder_of_code() {
     // A program that the shell found is called by its bare name.
     const bool bare = std::string_view(info.dli_fname).find('/') == std::string_view::npos;
     const std::filesystem::path whole =
-        std::filesystem::canonical(bare ? "/proc/self/exe" : info.dli_fname, failed);
+        std::filesystem::canonical(bare ? system::own_program() : info.dli_fname, failed);
     return failed ? std::filesystem::path() : whole.parent_path();
 }
 
