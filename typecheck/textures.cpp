@@ -58,7 +58,7 @@ template <class Data, class Load, class... More> static std::optional<std::uint3
 loaded(Interpreter &ev, const Load &load, std::vector<Data> &all, const char *what,
        const std::string &path, Span place, const More &...more) {
     const std::string from = naming_file(ev);
-    const std::string kind = (std::string(what) + ... + ("\n" + more));
+    const std::string kind = (std::string(what) + ... + fmt::format("\n{}:{}", more.size(), more));
     const auto named = ev.assets.try_emplace(fmt::format("{}\n{}\n{}", kind, from, path), 0);
     std::uint32_t &index = named.first->second;
     if (!named.second) return index;

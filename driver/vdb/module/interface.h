@@ -30,8 +30,9 @@ struct FathomVdbBox {
 };
 
 // The program fathom-read-vdb gets a file by its standard input, and as its arguments the bytes that
-// it may take, 0 for any, and the name of a grid, empty for the only one. It answers with this and then as many floats as the size's product, x the
-// fastest; or, where `good` is 0, with words to the end.
+// it may take, 0 for any, and the name of a grid, empty for the only one. It answers with this and
+// then as many floats as the size's product, x the fastest; or, where `good` is 0, with words to the
+// end.
 struct FathomVdbAnswer {
     std::uint64_t good;
     FathomVdbBox box;
