@@ -236,7 +236,7 @@ bool is_library_solid(std::string_view function) {
         "superquadric", "gdf", "gdf_tetrahedron", "gdf_cube", "gdf_octahedron", "gdf_dodecahedron",
         "gdf_icosahedron", "gdf_truncated_octahedron", "gdf_truncated_icosahedron", "gdf_blend",
         "metaballs", "metaballs_random", "menger", "gyroid", "schwarz_p", "mandelbulb", "helix",
-        "tubes", "heightfield", "gdf_pair", // the last of module dfmodel
+        "tubes", "heightfield", "distance_grid", "gdf_pair", // the last of module dfmodel
         // flat ones, below an extrusion or a revolution
         "circle", "ellipse", "rectangle", "rounded_rectangle", "polygon", "regular_polygon", "star",
         "segment", "arc", "ring", "bezier"};

@@ -151,24 +151,31 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         return finish(std::move(result));
     }
     if (auto gdf = generalised(id, l, name, paint)) return gdf;
-    if (name == "distance_grid") { // the file is no number: the body tells which it reads
-        for (const auto &argument : l.arguments) // the format knows distances alone
-            if (argument.first == "isovalue")
-                return otherwise(id, paint, "a grid with an isovalue");
+    std::vector<std::pair<std::string, Value>> words; // arguments that are no numbers
+    if (name == "distance_grid") {                    // the body tells which file it reads
         const auto grid = grid_below(scene_.graph, shape(bare(s.children[0])).args);
         if (!grid) return otherwise(id, paint, "this grid");
-        if (!scene_.grids[*grid].part.empty())
-            return otherwise(id, paint, "one grid of a file with several");
-        TreeNode result = made(NodeType::ExplicitField);
-        add(result, "File", yaml_word(scene_.grids[*grid].name));
-        return finish(std::move(result));
+        const ir::GridData &data = scene_.grids[*grid];
+        const bool distances =
+            std::none_of(l.arguments.begin(), l.arguments.end(),
+                         [](const auto &each) { return each.first == "isovalue"; });
+        if (distances && data.part.empty()) {
+            TreeNode result = made(NodeType::ExplicitField);
+            add(result, "File", yaml_word(data.name));
+            return finish(std::move(result));
+        }
+        words.emplace_back("file", yaml_mapping({{"File", yaml_word(data.name)}}));
+        if (!data.part.empty())
+            words.emplace_back("grid", yaml_mapping({{"Text", yaml_word(data.part)}}));
     }
-    const bool called = !l.arguments.empty() || !l.lists.empty(); // not the claims of a body alone
+    // Not the claims of a body alone.
+    const bool called = !words.empty() || !l.arguments.empty() || !l.lists.empty();
     if (called && is_library_solid(name)) {
         TreeNode result = made(NodeType::LibraryShape);
         add(result, "Function", yaml_word(name));
         Value arguments;
         arguments.kind = Value::Kind::Mapping;
+        for (auto &[key, value] : words) arguments.entries.emplace_back(key, std::move(value));
         for (const auto &[key, node] : l.arguments) {
             const auto value = numbers_.constant(node);
             auto program = value ? std::nullopt : steps(node);

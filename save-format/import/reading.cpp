@@ -63,6 +63,18 @@ bool is_plain_list(const Value &value) {
     return true;
 }
 
+// A file's path or a text, as an argument of a library call; empty where it is something else.
+std::string word_text(Importer &in, const Value &value) {
+    if (value.kind != Value::Kind::Mapping) return {};
+    const auto scalar = [&](std::string_view key) {
+        const Value *found = value.find(key);
+        return found && found->kind == Value::Kind::Scalar ? found : nullptr;
+    };
+    if (const Value *file = scalar("File")) return sdf_string(in.text_of_asset(file->text));
+    if (const Value *text = scalar("Text")) return sdf_string(text->text);
+    return {};
+}
+
 // Numbers, vectors and lists of them, as an argument of a library call; empty where it is something
 // else.
 std::string argument_text(const Value &value) {
@@ -101,6 +113,7 @@ std::string library_call(Importer &in, const Reading &reading, Properties &prope
         const Value *program = value.kind == Value::Kind::Mapping ? value.find("Program") : nullptr;
         if (text.empty())
             text = program ? program_text(*program, in.words, why) : argument_text(value);
+        if (text.empty() && !program) text = word_text(in, value);
         if (!is_name || text.empty()) {
             in.report.content(value.span, "`" + std::string(cut(name, 80)) +
                                               "` is no argument of numbers, and is left out");

@@ -110,6 +110,9 @@ sphere(1).displace_map(bumps, 0.1, scale: [0.5, 0.25]).paint(material(texture: t
 union { box(1).translate(y: 2)
   torus(1, 0.3).scale(0.5) }.displace_map(bumps, 0.05).translate(x: 3)
 distance_grid("parts/rock.nrrd").translate(x: -3)
+param level = 0.02 in -0.05..0.05
+distance_grid("parts/rock.nrrd", isovalue: level).translate(z: -3)
+distance_grid("parts/rock.nrrd", isovalue: -0.02, above: true).translate(z: 3)
 )";
     const driver::Compilation first =
         driver::compile_text("a.sdf", text, FATHOM_SOURCE_DIR "/examples", {});
@@ -121,6 +124,8 @@ distance_grid("parts/rock.nrrd").translate(x: -3)
     CHECK(result.errors == "");
     check_fields(result);
     CHECK(result.sdf.find("texture: tiles, texture_scale: 0.5") != std::string::npos);
+    CHECK(result.sdf.find("distance_grid(file: \"parts/rock.nrrd\", isovalue: level") !=
+          std::string::npos);
     CHECK(result.sdf.find(".displace_map(pebbles, 0.05, scale: 1)") != std::string::npos);
 }
 
