@@ -91,6 +91,42 @@ std::optional<TreeNode> TreeWriter::generalised(ShapeId id, const ir::Library &l
     return turn;
 }
 
+const char *TreeWriter::add_arguments(TreeNode &result, const ir::Library &l,
+                                      std::vector<Entry> words) {
+    Value arguments;
+    arguments.kind = Value::Kind::Mapping;
+    arguments.entries = std::move(words);
+    const auto written = [](const ir::Constant &value) {
+        if (value.type == ir::Type::Bool) return yaml_switch(value.value[0] != 0);
+        std::vector<Value> parts;
+        for (int i = 0; i < ir::components(value.type); ++i)
+            parts.push_back(yaml_scalar(value.value[static_cast<std::size_t>(i)]));
+        return parts.size() == 1 ? parts[0] : yaml_list(std::move(parts));
+    };
+    for (const auto &[key, node] : l.arguments) {
+        const auto value = numbers_.constant(node);
+        auto program = value ? std::nullopt : steps(node);
+        if (program) { // of the point
+            arguments.entries.emplace_back(key, yaml_mapping({{"Program", *program}}));
+            continue;
+        }
+        if (!value) return "these arguments";
+        arguments.entries.emplace_back(key, written(*value));
+        vary(result, key, node);
+    }
+    for (const auto &[key, nodes] : l.lists) {
+        std::vector<Value> items;
+        for (const NodeId node : nodes) {
+            const auto value = numbers_.constant(node);
+            if (!value || numbers_.varies(node)) return "this list";
+            items.push_back(written(*value));
+        }
+        arguments.entries.emplace_back(key, yaml_list(std::move(items)));
+    }
+    add(result, "Arguments", std::move(arguments));
+    return nullptr;
+}
+
 std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
     const Shape &s = shape(id);
     const ir::Library &l = scene_.shapes.libraries[s.payload];
@@ -151,8 +187,8 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         return finish(std::move(result));
     }
     if (auto gdf = generalised(id, l, name, paint)) return gdf;
-    std::vector<std::pair<std::string, Value>> words; // arguments that are no numbers
-    if (name == "distance_grid") {                    // the body tells which file it reads
+    std::vector<Entry> words;      // arguments that are no numbers
+    if (name == "distance_grid") { // the body tells which file it reads
         const auto grid = grid_below(scene_.graph, shape(bare(s.children[0])).args);
         if (!grid) return otherwise(id, paint, "this grid");
         const ir::GridData &data = scene_.grids[*grid];
@@ -173,39 +209,8 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
     if (called && is_library_solid(name)) {
         TreeNode result = made(NodeType::LibraryShape);
         add(result, "Function", yaml_word(name));
-        Value arguments;
-        arguments.kind = Value::Kind::Mapping;
-        for (auto &[key, value] : words) arguments.entries.emplace_back(key, std::move(value));
-        for (const auto &[key, node] : l.arguments) {
-            const auto value = numbers_.constant(node);
-            auto program = value ? std::nullopt : steps(node);
-            if (program) { // of the point
-                arguments.entries.emplace_back(key, yaml_mapping({{"Program", *program}}));
-                continue;
-            }
-            if (!value) return otherwise(id, paint, "`" + name + "` with these arguments");
-            std::vector<Value> parts;
-            for (int i = 0; i < ir::components(value->type); ++i)
-                parts.push_back(yaml_scalar(value->value[static_cast<std::size_t>(i)]));
-            if (value->type == ir::Type::Bool) parts[0] = yaml_switch(value->value[0] != 0);
-            arguments.entries.emplace_back(key, parts.size() == 1 ? parts[0]
-                                                                  : yaml_list(std::move(parts)));
-            vary(result, key, node);
-        }
-        for (const auto &[key, nodes] : l.lists) {
-            std::vector<Value> items;
-            for (const NodeId node : nodes) {
-                const auto value = numbers_.constant(node);
-                if (!value || numbers_.varies(node))
-                    return otherwise(id, paint, "`" + name + "` with this list");
-                std::vector<Value> parts;
-                for (int i = 0; i < ir::components(value->type); ++i)
-                    parts.push_back(yaml_scalar(value->value[static_cast<std::size_t>(i)]));
-                items.push_back(parts.size() == 1 ? parts[0] : yaml_list(std::move(parts)));
-            }
-            arguments.entries.emplace_back(key, yaml_list(std::move(items)));
-        }
-        add(result, "Arguments", std::move(arguments));
+        const char *unknown = add_arguments(result, l, std::move(words));
+        if (unknown) return otherwise(id, paint, "`" + name + "` with " + unknown);
         return finish(std::move(result));
     }
     const ShapeId body = bare(s.children[0]);

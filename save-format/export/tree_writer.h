@@ -74,6 +74,9 @@ class TreeWriter {
     void vary(TreeNode &node, std::string_view name, NodeId value);
     std::optional<TreeNode> generalised(ShapeId id, const ir::Library &library,
                                         const std::string &name, const Paint &paint);
+    // A library call's `Arguments`, behind those that are words: null, or what of them has no words.
+    const char *add_arguments(TreeNode &result, const ir::Library &library,
+                              std::vector<Entry> words);
     bool varying_turn(TreeNode &node, NodeId matrix);
     bool flat_words(ShapeId id);
     std::optional<TreeNode> flat_map(ShapeId id, const Paint &paint);
