@@ -408,8 +408,8 @@ static Corners inside_box(const ir::GridData &grid, double level, bool above, do
 // Where the numbers of a grid leave too little room to reckon with them.
 constexpr double largest_value = 1e30;
 
-// _grid(file, isovalue, above, name): [its number, the grid's corners lo and hi, the slope of its trilinear
-// field or 1 where that is 0, the corners of what is inside]
+// _grid(file, isovalue, above, name): [its number, the grid's corners lo and hi, the slope of its
+// trilinear field or 1 where that is 0, the corners of what is inside]
 static Value grid_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto path = want_string(ev, args[0], site.arg(0), "`distance_grid`");
     auto level = want_scalar_node(ev, args[1], site.arg(1), "`isovalue`");

@@ -29,10 +29,12 @@ std::filesystem::path folder_of_code() {
     Dl_info info{};
     if (dladdr(&mark, &info) == 0 || !info.dli_fname) return {};
     std::error_code failed;
-    // A program that the shell found is called by its bare name.
-    const bool bare = std::string_view(info.dli_fname).find('/') == std::string_view::npos;
-    const std::filesystem::path whole =
-        std::filesystem::canonical(bare ? system::own_program() : info.dli_fname, failed);
+    // A program that the shell found is called by its bare name, which must not be looked for in the
+    // current folder: what lies there may be a stranger's.
+    std::filesystem::path file = info.dli_fname;
+    if (!file.has_parent_path()) file = system::own_program();
+    if (!file.has_parent_path()) return {};
+    const std::filesystem::path whole = std::filesystem::canonical(file, failed);
     return failed ? std::filesystem::path() : whole.parent_path();
 }
 
@@ -41,9 +43,10 @@ std::filesystem::path companion(const char *name, std::string &why) {
     const std::filesystem::path here = folder_of_code();
     for (const std::filesystem::path &folder :
          {here, here / "fathom", here / ".." / FATHOM_LIBDIR / "fathom",
-          std::filesystem::path(FATHOM_INSTALLED)}) { // that of Python is elsewhere
+          std::filesystem::path(FATHOM_INSTALLED)}) { // for Python's module, which lies elsewhere
         std::error_code none;
-        if (!here.empty() && std::filesystem::exists(folder / name, none)) return folder / name;
+        if (folder.is_absolute() && std::filesystem::exists(folder / name, none))
+            return folder / name;
     }
     why =
         "this Fathom is without OpenVDB: install the package fathom-openvdb, or build Fathom where "

@@ -115,8 +115,9 @@ std::string library_call(Importer &in, const Reading &reading, Properties &prope
             text = program ? program_text(*program, in.words, why) : argument_text(value);
         if (text.empty() && !program) text = word_text(in, value);
         if (!is_name || text.empty()) {
-            in.report.content(value.span, "`" + std::string(cut(name, 80)) +
-                                              "` is no argument of numbers, and is left out");
+            in.report.content(value.span,
+                              "`" + std::string(cut(name, 80)) +
+                                  "` is no number, list, program, file or text, and is left out");
             properties.keep(name, "~");
             continue;
         }

@@ -72,12 +72,17 @@ TEST_CASE("one of several grids of an OpenVDB file is named") {
 
 TEST_CASE("OpenVDB files are read by a program that the shell finds by its name") {
     Files files;
+    // What a stranger has put beside the scene is not run.
     files.write("fathom", "not the program\n");
+    files.write("fathom-read-vdb", "#!/bin/sh\ntouch met\n");
+    files.write("libfathom-vdb.so", "not the module\n");
+    REQUIRE(shell(files, "chmod +x fathom-read-vdb").exit == 0);
     files.write("a.sdf", "distance_grid(\"stretched.vdb\")\n");
     const Result made =
         shell(files, "PATH=$(dirname '" FATHOM_PROGRAM "'):$PATH env fathom check a.sdf");
     INFO(made.err);
     CHECK(made.exit == 0);
+    CHECK_FALSE(fs::exists(files / "met"));
 }
 
 TEST_CASE("a grid of OpenVDB stands where its transform says, or is refused") {
