@@ -71,6 +71,8 @@ struct Flattener {
     std::optional<NodeId> rounding_in(NodeId id, int depth = 0) const;
 
     void find_mean(Scope &scope, NodeId id, Instruction &out);
+    void find_interpolation(Scope &scope, NodeId id, Instruction &out);
+    Slot mix(Scope &scope, NodeId id, Instruction out);
     Slot sum(Scope &scope, NodeId id, Instruction out);
 
     Slot product(Scope &scope, NodeId id, Instruction out);

@@ -372,6 +372,26 @@ void Machine::hold_around(const Instruction &instruction) {
     for (Interval &own : grad_[at]) own = meet(own, Interval(-most, most));
 }
 
+// Between values at corners that stand still, wherever they do not jump (interpolation.h).
+void Machine::hold_between(const Instruction &instruction) {
+    const Slot out = instruction.out, vector = instruction.between->vector;
+    const std::uint32_t at = tape_.first[out];
+    if (norm_[out] == infinity || odd_[at]) return;
+    for (std::uint32_t i = 0; i < tape_.size[vector]; ++i)
+        if (odd_[tape_.first[vector] + i]) return;
+    Interval all = value(instruction.between->corners[0], 0);
+    for (const Slot corner : instruction.between->corners) {
+        if (norm_[corner] != 0 || odd_[tape_.first[corner]]) return;
+        all = hull(all, value(corner, 0));
+    }
+    value_[at] = meet(value_[at], all);
+    const double slope = times(instruction.between->by, norm_[vector]),
+                 most = up(times(slope, (Interval(all.hi) - Interval(all.lo)).hi), 4);
+    if (!(most < norm_[out])) return;
+    norm_[out] = most;
+    for (Interval &own : grad_[at]) own = meet(own, Interval(-most, most));
+}
+
 // |grad v| <= c v, v >= 0: of exp(u) with c the norm of u, of sums with the greater of both, of
 // products with the sum (docs/lipschitz.md, 2.16).
 double Machine::relative_norm(const Instruction &instruction) const {

@@ -120,6 +120,7 @@ class Machine {
     void finish(const Instruction &instruction, double norm, bool odd_used);
     void hold_mean(const Instruction &instruction);
     void hold_around(const Instruction &instruction);
+    void hold_between(const Instruction &instruction);
     void fail(const Instruction &instruction, Trouble why);
     void copy(Slot from, Slot to);
     void join(Slot into, Slot other, bool jump, NodeId cause);

@@ -63,6 +63,10 @@ void Machine::need_args(const Instruction &in, std::vector<bool> &wanted) const 
     };
     for (const Slot s : in.turned) wanted[s] = true;
     if (in.around) wanted[in.around->vector] = true;
+    if (in.between) {
+        wanted[in.between->vector] = true;
+        for (const Slot s : in.between->corners) wanted[s] = true;
+    }
     if (in.mean) wanted[in.mean->a] = wanted[in.mean->b] = true;
     if (in.form == Form::Plain && (in.op == Op::Min || in.op == Op::Union)) return least(0, 0, 1);
     if (in.form == Form::Plain && (in.op == Op::Max || in.op == Op::Intersection))

@@ -38,6 +38,7 @@ void Machine::step(const Instruction &instruction) {
     step.run();
     if (instruction.mean) hold_mean(instruction);
     if (instruction.around) hold_around(instruction);
+    if (instruction.between) hold_between(instruction);
     if (reads_values_) step.read();
     if (!bend_.empty()) bend_[instruction.out] = step.bend();
 }

@@ -47,8 +47,8 @@ struct Angles {
         return found;
     }
 
-    // x % m as x - m*floor(x/m), in an angle.
-    NodeId by_steps(NodeId angle, std::vector<NodeId> &waves) {
+    // x % m as x - m*v, in an angle; `floors` says of each v that it is floor(x/m).
+    NodeId by_steps(NodeId angle, std::vector<NodeId> &waves, ir::Substitution &floors) {
         ir::Substitution map;
         for (NodeId id : all_below(graph, angle)) {
             const ir::Node node = graph[id];
@@ -58,7 +58,9 @@ struct Angles {
             const NodeId x = graph.arg(id, 0),
                          m = node.op == Op::Mod ? graph.arg(id, 1) : graph.number(1);
             if (!graph.as_number(m)) continue;
-            map[id] = graph.sub(x, graph.mul(m, graph.make(Op::Floor, {graph.div(x, m)})));
+            const NodeId var = graph.fresh_var(ir::Type::Float);
+            floors[var] = graph.make(Op::Floor, {graph.div(x, m)});
+            map[id] = graph.sub(x, graph.mul(m, var));
             waves.push_back(id);
         }
         return map.empty() ? angle : ir::substitute(graph, angle, map);
@@ -82,7 +84,7 @@ struct Angles {
             return {};
         std::vector<NodeId> waves;
         ir::Substitution steps, back; // a step stays the node that it is
-        const NodeId stepped = by_steps(angle, waves);
+        const NodeId stepped = by_steps(angle, waves, back);
         for (NodeId id : all_below(graph, stepped))
             if (is_rounding[graph[id].op] && graph[id].type == ir::Type::Float) {
                 const NodeId var = graph.fresh_var(ir::Type::Float);

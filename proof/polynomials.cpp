@@ -10,7 +10,7 @@ namespace fathom::proof {
 
 namespace {
 
-constexpr std::size_t max_terms = 64;
+constexpr std::size_t max_terms = 160, max_factors = 12;
 
 // A factor that stands twice in a product, and what its square is: |a|^2 = a^2, cos^2 = 1 - sin^2.
 bool has_square(const Graph &graph, NodeId factor) {
@@ -85,7 +85,7 @@ std::optional<Polynomial> Expansion::multiply(const Polynomial &a, const Polynom
             } else {
                 out[product] += x * y;
             }
-            if (out.size() > max_terms || product.size() > 8) return {};
+            if (out.size() > max_terms || product.size() > max_factors) return {};
         }
     return out;
 }

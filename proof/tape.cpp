@@ -25,6 +25,7 @@ enum class Look : std::uint8_t {
     Loop,
     LoopResult,
     Sum,
+    Mix,
     Root,
     Length,
     Product,
@@ -40,6 +41,7 @@ constexpr ir::OpTable<Look> look_of_op{
     {Op::LoopResult, Look::LoopResult},
     {Op::Sub, Look::Sum},
     {Op::Add, Look::Sum},
+    {Op::Mix, Look::Mix},
     {Op::Sqrt, Look::Root},
     {Op::Pow, Look::Root},
     {Op::Length, Look::Length},
@@ -161,6 +163,7 @@ Slot Flattener::flatten_node(Scope &scope, NodeId id) {
         slot(scope, graph.arg(id, 0));
         return loop_results.at(graph.arg(id, 0))[node.payload];
     case Look::Sum: return sum(scope, id, std::move(out));
+    case Look::Mix: return mix(scope, id, std::move(out));
     case Look::Root:
         if (const auto inward = root_inward(graph, id)) {
             if (cancelling.contains(inward->from)) cancelling.insert(inward->choice);

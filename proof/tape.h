@@ -70,6 +70,14 @@ struct Instruction {
         double by = 1;
     };
     std::optional<AroundAxis> around;
+    // Of a scalar between values at the corners of a cell (interpolation.h): it is no steeper than
+    // `by` times the width of their range times `vector`.
+    struct Between {
+        Slot vector = 0;
+        std::vector<Slot> corners;
+        double by = 1;
+    };
+    std::optional<Between> between;
     NodeId node;
 };
 

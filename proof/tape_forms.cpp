@@ -6,6 +6,7 @@
 #include "proof/continuity.h"
 #include "proof/forms.h"
 #include "proof/guarded.h"
+#include "proof/interpolation.h"
 #include "proof/linear_maps.h"
 #include "proof/means.h"
 #include "proof/segments.h"
@@ -140,7 +141,25 @@ Slot Flattener::sum(Scope &scope, NodeId id, Instruction out) {
     for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
     if (out.type != ir::Type::Float) return emit(scope, std::move(out));
     find_mean(scope, id, out);
+    find_interpolation(scope, id, out);
     return emit_by_pieces(scope, id, std::move(out), {id});
+}
+
+Slot Flattener::mix(Scope &scope, NodeId id, Instruction out) {
+    if (out.type == ir::Type::Float) find_interpolation(scope, id, out);
+    return emit_plain(scope, id, std::move(out));
+}
+
+void Flattener::find_interpolation(Scope &scope, NodeId id, Instruction &out) {
+    if (cancelling.empty()) return; // it jumps
+    const auto found = interpolation(graph, id);
+    if (!found) return;
+    const std::vector<NodeId> parts = by_vector(found->along);
+    const ir::Type type = ir::vector_type(int(found->along.size()));
+    Instruction::Between between{0, {}, found->steepness};
+    between.vector = slot(scope, parts.size() > 1 ? graph.make(Op::Make, type, parts) : parts[0]);
+    for (NodeId corner : found->corners) between.corners.push_back(slot(scope, corner));
+    out.between = std::move(between);
 }
 
 void Flattener::find_mean(Scope &scope, NodeId id, Instruction &out) {

@@ -275,6 +275,7 @@ NodeId simple_sub(const Made &n) {
     if (n.args[0] == n.args[1]) return n.filled_with(0);
     if (n.is(0, 0)) return n.make(Op::Neg, {n.args[1]});
     if (n.op_of(1) == Op::Neg && !n.whole()) return n.make(Op::Add, {n.args[0], n.inside(1)});
+    if (n.op_of(1) == Op::Floor && n.inside(1) == n.args[0]) return n.make(Op::Fract, {n.args[0]});
     return {};
 }
 

@@ -121,10 +121,10 @@ class Adversary : public Chance {
             &Adversary::choices,     &Adversary::smooth, &Adversary::exponentials,
             &Adversary::powers,      &Adversary::ratios, &Adversary::conditions,
             &Adversary::repetitions, &Adversary::loops,  &Adversary::nested,
-            &Adversary::angles,      &Adversary::uses};
+            &Adversary::angles,      &Adversary::uses,   &Adversary::noise};
         return (this->*makers[kind % makers.size()])();
     }
-    static constexpr std::size_t kinds = 14;
+    static constexpr std::size_t kinds = 15;
 
   private:
     // A linear form whose borders others share.
@@ -319,6 +319,36 @@ class Adversary : public Chance {
                " for i in 0..3 { s = s + 0.1 * " +
                inner + " * (i + 1) }\n p.y + 0.2 * (s" + of({" + ", " * "}) + tent() +
                of({"", " + f0", " * f0 * (1 - f0)"}) + ")\n}, within: ball(2))\n";
+    }
+
+    // Value noise by hand in the plane, right or nearly.
+    std::string noise() {
+        const std::string hash =
+            of({"hash(c)", "fract(sin(dot(c, vec2(12.9898, 78.233))) * 43758.5453)",
+                "3 * hash(c) - k", "sin(2 * c.x + c.y)", "hash(c) * (1 + 0.1 * c.y)", "c.x * c.y",
+                "hash(c) * fract(0.3 * c.x)"});
+        const std::string f = of({"fract(x)", "x - i", "fract(x)", "fract(x.yx)", "abs(fract(x))"});
+        const std::string ease =
+            of({"f", "f * f * (3 - 2 * f)", "smoothstep(0, 1, f)",
+                "f * f * f * (f * (f * 6 - 15) + 10)", "f * f", "2 * f - f * f",
+                "0.5 - 0.5 * cos(pi * f)", "f * (1.5 - 0.5 * f * f)", "f * f * (4 - 3 * f)",
+                "f * (4 * f * f - 6 * f + 3)"});
+        const std::string sum = of(
+            {"mix(mix(a, b, u.x), mix(c, d, u.x), u.y)", "mix(mix(a, c, u.y), mix(b, d, u.y), u.x)",
+             "mix(a, b, u.x) + (c - a) * u.y * (1 - u.x) + (d - b) * u.x * u.y",
+             "a + (b - a) * u.x + (c - a) * u.y + (a - b - c + d) * u.x * u.y",
+             "a * (1 - u.x) * (1 - u.y) + b * u.x * (1 - u.y) + u.y * (c * (1 - u.x) + d * u.x)",
+             "a + (b - a) * u.x + (c - a) * u.y + (a - b + c + d) * u.x * u.y",
+             "mix(mix(a, b, u.y), mix(c, d, u.x), u.y)", "mix(a, b, u.x) * mix(a, c, u.y)",
+             "mix(a, c, u.y) + mix(a, b, u.x) * k"});
+        const std::string at =
+            of({"p.xz", "2 * p.xy", "[p.x + p.y, p.x - p.y]", "p.xx", "[p.x, 2 * p.x]",
+                "[length(p), p.y]", "p.xz + 0.2 * sin(3 * p.zx)", "[p.x * p.y, p.z]", "k * p.yz",
+                "[abs(p.x), p.z]", "[0.6 * p.x + 0.8 * p.z, 0.8 * p.x - 0.6 * p.z]"});
+        return "fn h(c: vec2) = " + hash + "\nfn n(x: vec2) {\n let i = floor(x)\n let f = " + f +
+               "\n let u = " + ease + "\n let a = h(i)\n let b = h(i + [1, 0])\n" +
+               " let c = h(i + [0, 1])\n let d = h(i + 1)\n " + sum + "\n}\n" +
+               field("n(" + at + ")" + (often() ? "" : " + 0.5 * n(2 * " + at + ")"));
     }
 
     // Steps of steps.
