@@ -155,7 +155,8 @@ std::array<bool, 3> to_one_period(const Periods &periods, Cell &whole) {
     return shifted;
 }
 
-// What of a zone is the same for a copy that is shifted along these axes: tubes along the only one.
+// What of a zone is the same for a copy that is shifted along these axes: tubes along the only one,
+// and for a ball the tube that holds it.
 std::optional<Zone> zone_along(const Zone &zone, const std::array<bool, 3> &shifted) {
     const auto stays = [&](const Zone &tube) {
         if (tube.kind != ir::RegionKind::Tube) return false;
@@ -163,8 +164,21 @@ std::optional<Zone> zone_along(const Zone &zone, const std::array<bool, 3> &shif
             if (shifted[i] && int(i) != tube.axis) return false;
         return true;
     };
+    const auto tube_about = [&](int axis) -> std::optional<Zone> {
+        for (std::size_t i = 0; i < 3; ++i)
+            if (shifted[i] != (int(i) == axis) ||
+                (!shifted[i] && !(zone.center[i] == Interval(0.0))))
+                return {};
+        Zone tube;
+        tube.kind = ir::RegionKind::Tube;
+        tube.half = zone.half;
+        tube.axis = axis;
+        return tube;
+    };
     Zone out;
     if (stays(zone)) out = zone;
+    for (int axis = 0; axis < 3 && zone.kind == ir::RegionKind::Ball; ++axis)
+        if (const auto tube = tube_about(axis)) out = *tube;
     out.less.clear();
     std::ranges::copy_if(zone.less, std::back_inserter(out.less), stays);
     if (out.kind == ir::RegionKind::Everywhere && out.less.empty()) return {};
@@ -200,6 +214,32 @@ bool keep_half(const Tape &tape, Cell &whole, const Zone *zone) {
 
 namespace {
 
+// Of the points of a zone.
+Distances distances_of(const Zone &zone) {
+    constexpr double loose = 1e-12; // as in `misses`
+    Distances out;
+    const auto keep = [&](const Zone &round, bool inside) {
+        const bool is_ball = round.kind == ir::RegionKind::Ball;
+        if (!is_ball && round.kind != ir::RegionKind::Tube) return;
+        for (const Interval &x : round.center)
+            if (is_ball && !(x == Interval(0.0))) return;
+        if (inside) {
+            const double most = round.half[0].hi * (1 + loose);
+            for (std::size_t i = 0; i < 3; ++i)
+                if (is_ball || int(i) == round.axis)
+                    out.from_axis[i].hi = std::min(out.from_axis[i].hi, most);
+            if (is_ball) out.from_origin.hi = most;
+        } else {
+            const double least = round.half[0].lo * (1 - loose);
+            Interval &of = is_ball ? out.from_origin : out.from_axis[std::size_t(round.axis)];
+            of.lo = std::max(of.lo, least);
+        }
+    };
+    keep(zone, true);
+    for (const Zone &hole : zone.less) keep(hole, false);
+    return out;
+}
+
 FieldBound search_bound(Flattening &context, const Ranges &ranges, NodeId field,
                         const Domain &domain, const Budget &budget) {
     FieldBound out;
@@ -219,6 +259,7 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, NodeId field,
         reduced && domain.zone ? zone_along(*domain.zone, shifted) : std::nullopt;
     const Zone *zone = !reduced ? domain.zone : along ? &*along : nullptr;
     const bool negated = keep_half(tape, whole, zone);
+    if (zone) machine.keep_to(distances_of(*zone));
 
     auto outside = [&](const Cell &cell) { return zone && misses(*zone, cell); };
     auto sample = [&](const std::array<double, 3> &p) {

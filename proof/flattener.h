@@ -1,6 +1,7 @@
 // What makes a tape of an expression: scopes, slots, and each node's instruction (tape.h).
 #pragma once
 
+#include "proof/linear_maps.h"
 #include "proof/supports.h"
 #include "proof/tape.h"
 
@@ -58,6 +59,7 @@ struct Flattener {
 
     // A vector that may be another one turned, or moved along a direction.
     Slot emit_turned(Scope &scope, NodeId id, Instruction out);
+    Instruction::Turning turning_of(Scope &scope, const LinearMap &map);
     std::vector<NodeId> args_of(NodeId id) const { // a copy: flattening may add nodes
         return {graph.args(id).begin(), graph.args(id).end()};
     }

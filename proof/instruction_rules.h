@@ -77,6 +77,7 @@ struct Step {
     void held_wave();
     void absolute();
     void angle();
+    Interval length_of_both() const;
     void smoothstep();
     template <auto function, auto slope> void of_one() { unary(function, slope); }
 

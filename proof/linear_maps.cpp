@@ -6,7 +6,9 @@
 
 #include "ir/interval.h"
 #include "ir/passes/inline.h"
+#include "ir/passes/walk.h"
 #include "proof/continuity.h"
+#include "proof/polynomials.h"
 #include "proof/segments.h"
 
 #include <algorithm>
@@ -250,6 +252,103 @@ std::optional<Norm> rows_norm(Graph &graph, const std::vector<std::array<NodeId,
                 greatest - least <= 1e-12 * greatest && across <= 1e-12 * greatest};
 }
 
+// The angle by whose sine and cosine the rows vary, and how they change with it.
+std::optional<LinearMap::Turning> turning(Graph &graph, std::vector<std::array<NodeId, 4>> rows,
+                                          const std::vector<NodeId> &constants,
+                                          const std::function<bool(NodeId)> &varies) {
+    LinearMap::Turning out;
+    for (NodeId c : constants) {
+        if (!varies(c)) continue;
+        if (graph[c].op != Op::Sin && graph[c].op != Op::Cos) return {};
+        if (out.angle && out.angle != graph.arg(c, 0)) return {};
+        out.angle = graph.arg(c, 0);
+    }
+    if (!out.angle) return {};
+    const NodeId cosine = graph.make(Op::Cos, {out.angle}), sine = graph.make(Op::Sin, {out.angle}),
+                 u = graph.fresh_var(ir::Type::Float), v = graph.fresh_var(ir::Type::Float);
+    for (std::array<NodeId, 4> &row : rows)
+        for (std::size_t column = 0; column < 4; ++column) {
+            if (!row[column]) continue;
+            out.columns |= 1u << column;
+            const auto entry =
+                polynomial(graph, ir::substitute(graph, row[column], {{cosine, u}, {sine, v}}));
+            if (!entry) return {};
+            Polynomial change;
+            for (const auto &[factors, by] : *entry)
+                for (std::size_t i = 0; i < factors.size(); ++i) {
+                    if (factors[i] != u && factors[i] != v) continue;
+                    Monomial changed = factors;
+                    changed[i] = factors[i] == u ? v : u;
+                    std::sort(changed.begin(), changed.end());
+                    change[changed] += factors[i] == u ? -by : by;
+                }
+            std::erase_if(change, [](const auto &term) { return term.second == 0; });
+            if (!change.empty()) out.moving |= 1u << column;
+            row[column] = ir::substitute(graph, rebuilt(graph, change), {{u, cosine}, {v, sine}});
+        }
+    const auto norm = rows_norm(graph, rows);
+    if (!norm) return {};
+    out.norm = norm->norm;
+    return out;
+}
+
+// Rows that are sums of sines and cosines times scalars, whatever these are, as M v: v is made of the
+// scalars.
+struct Scalars {
+    Graph &graph;
+    std::vector<NodeId> parts{}, waves{};
+    std::vector<std::array<NodeId, 4>> rows{};
+
+    bool take(NodeId id, double sign, int depth = 0) {
+        constexpr int max_depth = 8;
+        const ir::Node node = graph[id];
+        if (depth > max_depth) return false;
+        const auto inner = [&](int i, double by) {
+            return take(graph.arg(id, i), sign * by, depth + 1);
+        };
+        if (node.op == Op::Neg) return inner(0, -1);
+        if (node.op == Op::Add || node.op == Op::Sub)
+            return inner(0, 1) && inner(1, node.op == Op::Add ? 1 : -1);
+        if (node.op == Op::Mul)
+            for (int i = 0; i < 2; ++i) {
+                NodeId wave = graph.arg(id, i);
+                const bool negative = graph[wave].op == Op::Neg;
+                if (negative) wave = graph.arg(wave, 0);
+                if (graph[wave].op != Op::Sin && graph[wave].op != Op::Cos) continue;
+                waves.push_back(wave);
+                return add(graph.arg(id, 1 - i),
+                           graph.mul(graph.number(negative ? -sign : sign), wave));
+            }
+        return add(id, graph.number(sign));
+    }
+    bool add(NodeId part, NodeId by) {
+        const auto at = std::size_t(std::ranges::find(parts, part) - parts.begin());
+        if (at == parts.size()) parts.push_back(part);
+        if (parts.size() > 4) return false;
+        NodeId &to = rows.back()[at];
+        to = to ? graph.add(to, by) : by;
+        return true;
+    }
+};
+
+std::optional<LinearMap> turned_scalars(Graph &graph, NodeId vector,
+                                        const std::function<bool(NodeId)> &varies) {
+    Reader reader{graph, &varies, nullptr, vector, ir::components(graph[vector].type)};
+    Scalars scalars{graph};
+    for (int i = 0; i < reader.size; ++i) {
+        const NodeId part = reader.part(vector, i);
+        scalars.rows.emplace_back();
+        if (reader.failed || !part || !scalars.take(part, 1)) return {};
+    }
+    if (scalars.waves.empty() || scalars.parts.size() < 2) return {};
+    const auto change = turning(graph, scalars.rows, scalars.waves, varies);
+    const auto norm = rows_norm(graph, scalars.rows);
+    if (!change || !norm) return {};
+    const NodeId of =
+        graph.make(Op::Make, ir::vector_type(int(scalars.parts.size())), scalars.parts);
+    return LinearMap{of, norm->norm, false, scalars.waves, change};
+}
+
 } // namespace
 
 std::optional<LinearMap> turned(Graph &graph, NodeId vector,
@@ -260,24 +359,33 @@ std::optional<LinearMap> turned(Graph &graph, NodeId vector,
     for (const bool shallow : {false, true}) {
         Reader reader{graph, &varies, &known, vector, n};
         std::vector<std::array<NodeId, 4>> rows;
+        std::vector<NodeId> rests;
         reader.shallow = shallow;
         for (int i = 0; i < n && !reader.failed; ++i) {
             const NodeId part =
                 shallow && by_component(graph[vector].op) ? NodeId() : reader.part(vector, i);
             reader.failed = reader.failed || !part;
-            if (!reader.failed) rows.push_back(reader.read(part).by);
+            if (reader.failed) continue;
+            const LinearSum sum = reader.read(part);
+            rows.push_back(sum.by);
+            if (sum.rest) rests.push_back(sum.rest);
         }
         if (reader.failed || !reader.of) continue;
         const auto norm = rows_norm(graph, rows);
         if (!norm) continue;
         const bool still = std::none_of(reader.constants.begin(), reader.constants.end(), varies);
-        if (still || !found)
+        if (still || !found) {
             found = LinearMap{reader.of, norm->norm,
                               norm->even && ir::components(graph[reader.of].type) == n,
-                              std::move(reader.constants)};
-        if (still) break;
+                              reader.constants};
+            if (!still && std::none_of(rests.begin(), rests.end(), varies))
+                found->turning = turning(graph, rows, reader.constants, varies);
+        }
+        if (still) return found;
     }
-    return found;
+    if (found && found->turning) return found;
+    const auto scalars = turned_scalars(graph, vector, varies);
+    return scalars ? scalars : found;
 }
 
 std::optional<double> matrix_norm(Graph &graph, NodeId matrix) {

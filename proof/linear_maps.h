@@ -18,6 +18,15 @@ struct LinearMap {
     bool whole = false;                // M's rows are of one length and at right angles, as many as
                                        // v has components
     std::vector<ir::NodeId> constants; // what M and c are made of: holds where none of these varies
+    // Where some of them do: M is made of the sine and the cosine of one angle that varies, and of
+    // what does not, as c is.
+    struct Turning {
+        ir::NodeId angle;
+        double norm = 1; // a bound of the spectral norm of dM/d angle
+        unsigned columns = 0,
+                 moving = 0; // a bit each: those of M, and of dM/d angle, that are not 0
+    };
+    std::optional<Turning> turning{};
 };
 
 // `vector` as M v + c; nothing where that is not seen. `varies` says which vectors may be v;

@@ -359,6 +359,36 @@ void Machine::hold_mean(const Instruction &instruction) {
     norm_[out] = std::min(norm_[out], up(times(most, 1 + 2 * beyond + 1e-9), 4));
 }
 
+// A vector that turns with an angle: M J_v + M' v grad a (linear_maps.h).
+void Machine::hold_turning(const Instruction &instruction) {
+    using Way = Instruction::Turning::Way;
+    const auto &[vector, angle, norm, by, moving, way] = *instruction.turning;
+    const Slot out = instruction.out;
+    if (norm_[out] == infinity || odd_[tape_.first[angle]]) return;
+    Interval sum;
+    unsigned taken = 0; // of the point's coordinates
+    bool is_point = distances_.has_value();
+    for (std::uint32_t c = 0; c < tape_.size[vector]; ++c) {
+        const std::uint32_t at = tape_.first[vector] + c;
+        if (odd_[at]) return;
+        if (!(moving >> c & 1)) continue;
+        sum += square(value_[at]);
+        is_point = is_point && coordinate_[at] != 0;
+        if (is_point) taken |= 1u << (coordinate_[at] - 1);
+    }
+    const double arm = length_of(is_point ? taken : 0, sqrt(sum)).hi;
+    const double turns = up(times(times(by, norm_[angle]), arm), 8),
+                 moves = up(times(norm, norm_[vector]), 4);
+    double most = moves + turns;
+    if (way == Way::Apart) most = std::hypot(moves, turns);
+    if (way == Way::Shear) most = (turns + std::hypot(turns, 2 * moves)) / 2;
+    most = up(most, 8);
+    if (!(most < norm_[out])) return;
+    norm_[out] = most;
+    for (std::uint32_t i = tape_.first[out]; i < tape_.first[out] + tape_.size[out]; ++i)
+        for (Interval &own : grad_[i]) own = meet(own, Interval(-most, most));
+}
+
 // A product about an axis on which its angle is singular, and it is not (around.h).
 void Machine::hold_around(const Instruction &instruction) {
     const Slot out = instruction.out, vector = instruction.around->vector;
@@ -421,7 +451,44 @@ double Machine::relative_norm(const Instruction &instruction) const {
 Interval Machine::box_length(Slot s) const {
     Interval sum;
     for (std::uint32_t i = 0; i < tape_.size[s]; ++i) sum += square(value_[tape_.first[s] + i]);
-    return sqrt(sum);
+    return length_of(coordinates(s), sqrt(sum));
+}
+
+void Machine::keep_to(const Distances &distances) {
+    distances_ = distances;
+    const auto point = std::ranges::find(tape_.each, Op::Point, &Instruction::op);
+    coordinate_.assign(tape_.components, 0);
+    if (point == tape_.each.end()) return;
+    const std::uint32_t at = tape_.first[point->out];
+    for (Slot s = 0; s < tape_.first.size(); ++s)
+        for (int c = 0; c < int(tape_.size[s]); ++c)
+            if (const std::uint32_t from = origin(s, c); from >= at && from < at + 3)
+                coordinate_[tape_.first[s] + std::uint32_t(c)] = std::uint8_t(from - at + 1);
+}
+
+// The point's coordinates, a bit each, that a value is made of, each once; else 0.
+unsigned Machine::coordinates(Slot s) const {
+    if (!distances_) return 0;
+    unsigned out = 0;
+    for (std::uint32_t i = tape_.first[s]; i < tape_.first[s] + tape_.size[s]; ++i) {
+        const unsigned one = coordinate_[i] == 0 ? 0 : 1u << (coordinate_[i] - 1);
+        if (one == 0 || (out & one) != 0) return 0;
+        out |= one;
+    }
+    return out;
+}
+
+// The length of a vector of these coordinates, at the points that `keep_to` keeps to.
+Interval Machine::length_of(unsigned coordinates, Interval found) const {
+    if (!distances_ || coordinates == 0) return found;
+    Interval known = coordinates == 7 ? distances_->from_origin : Distances::everywhere;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (coordinates == 7)
+            known.lo = std::max(known.lo, distances_->from_axis[axis].lo);
+        else if (coordinates == (7u & ~(1u << axis)))
+            known = distances_->from_axis[axis];
+    const Interval both{std::max(found.lo, known.lo), std::min(found.hi, known.hi)};
+    return both.lo <= both.hi ? both : found; // no point of the cell is kept
 }
 
 } // namespace fathom::proof

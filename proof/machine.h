@@ -51,6 +51,13 @@ struct Cell {
                               Interval::everything()};
 };
 
+// How far the points of a region are from each coordinate axis, and from the origin.
+struct Distances {
+    std::array<Interval, 3> from_axis{everywhere, everywhere, everywhere};
+    Interval from_origin = everywhere;
+    static constexpr Interval everywhere{0, ir::rounding::infinity};
+};
+
 using Row = std::array<Interval, 3>;
 
 // A bound on the spectral norm of every matrix whose rows lie in `rows`.
@@ -70,6 +77,9 @@ class Machine {
     // Of the steps just run, those that a part of the cell may need anew. What is the same at all of
     // its points and what no choice takes stays as it is (machine_needed.cpp).
     Steps needed(const Steps &steps) const;
+
+    // From here on runs tell of those points of a cell alone that are so far away.
+    void keep_to(const Distances &distances);
 
     // From here on hashes and noise have the values at the middle of what they are of, not their
     // ranges: for what is told of single points, and for no bound.
@@ -119,12 +129,15 @@ class Machine {
     void step(const Instruction &instruction);
     void finish(const Instruction &instruction, double norm, bool odd_used);
     void hold_mean(const Instruction &instruction);
+    void hold_turning(const Instruction &instruction);
     void hold_around(const Instruction &instruction);
     void hold_between(const Instruction &instruction);
     void fail(const Instruction &instruction, Trouble why);
     void copy(Slot from, Slot to);
     void join(Slot into, Slot other, bool jump, NodeId cause);
     Interval box_length(Slot s) const;
+    unsigned coordinates(Slot s) const;
+    Interval length_of(unsigned coordinates, Interval found) const;
     void reach(const Cell &cell);
     void run_way();
     void look_back();
@@ -146,6 +159,8 @@ class Machine {
     Cell cell_;
     bool near_ = false; // no coordinate of the cell is above `near_enough`
     bool reads_values_ = false;
+    std::optional<Distances> distances_;
+    std::vector<std::uint8_t> coordinate_; // by component: 1 + that of the point that it is, or 0
     bool in_reach_ = false; // the cell is where rays go, and values may leave single precision
     std::vector<Interval> value_;
     std::vector<Row> grad_;

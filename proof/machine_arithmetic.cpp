@@ -269,9 +269,17 @@ void Step::absolute() {
     finish(norm(0), false);
 }
 
+// Of two scalars together.
+Interval Step::length_of_both() const {
+    const unsigned a = machine.coordinates(in.args[0]), b = machine.coordinates(in.args[1]);
+    return machine.length_of(a && b && a != b ? a | b : 0,
+                             sqrt(square(value(0, 0)) + square(value(1, 0))));
+}
+
 // the angle turns by at most |grad (x, y)| / r; it jumps across the negative x axis
 void Step::angle() {
-    Interval y = value(0, 0), x = value(1, 0), pi(-3.1415926535897936, 3.1415926535897936);
+    const Interval y = value(0, 0), x = value(1, 0), r = length_of_both(),
+                   pi(-3.1415926535897936, 3.1415926535897936);
     bool varies = norm(0) > 0 || norm(1) > 0;
     bool cut = x.lo <= 0 && y.contains(0);
     Interval v = pi;
@@ -291,16 +299,16 @@ void Step::angle() {
         set(0, v, {any, any, any});
         return finish(1, any_odd);
     }
-    const bool crosses = cut && !(cancels() && !x.contains(0));
+    const bool crosses = cut && !(cancels() && (!x.contains(0) || r.lo > 0));
     if (!varies || crosses) {
         set(0, v, none);
         if (varies) return fail(x.contains(0) ? Trouble::Singular : Trouble::Jump);
         return finish(0, any_odd);
     }
-    Interval r2 = square(x) + square(y);
+    Interval r2 = square(r);
     if (r2.lo <= 0) r2.lo = std::numeric_limits<double>::min();
     set(0, v, sum(scaled(x / r2, grad(0, 0)), scaled(-(y / r2), grad(1, 0))));
-    finish(up(std::hypot(norm(0), norm(1)) / std::sqrt(r2.lo), 8), any_odd);
+    finish(up(together() / std::sqrt(r2.lo), 8), any_odd);
 }
 
 void Step::smoothstep() {

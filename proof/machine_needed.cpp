@@ -62,6 +62,7 @@ void Machine::need_args(const Instruction &in, std::vector<bool> &wanted) const 
         }
     };
     for (const Slot s : in.turned) wanted[s] = true;
+    if (in.turning) wanted[in.turning->vector] = wanted[in.turning->angle] = true;
     if (in.around) wanted[in.around->vector] = true;
     if (in.between) {
         wanted[in.between->vector] = true;

@@ -36,6 +36,7 @@ Step::Step(Machine &of, const Instruction &instruction)
 void Machine::step(const Instruction &instruction) {
     Step step(*this, instruction);
     step.run();
+    if (instruction.turning) hold_turning(instruction);
     if (instruction.mean) hold_mean(instruction);
     if (instruction.around) hold_around(instruction);
     if (instruction.between) hold_between(instruction);

@@ -187,6 +187,7 @@ void Step::length() {
         }
     }
     length = sqrt(length);
+    if (in.args.size() == 1) length = machine.length_of(machine.coordinates(in.args[0]), length);
     if (in.args.size() == 1)
         norms = norm(0);
     else if (rows <= 16)

@@ -101,6 +101,7 @@ class PieceReader {
     struct Mode {
         bool lengths = true;  // rows of q for |q|
         bool shallow = false; // vectors that are computed are parts as they are
+        bool turns = false;   // so are sums of products of what varies
     };
     PieceReader(Graph &graph, int &steps, Mode mode)
         : graph_(graph), steps_(steps), first_(steps), mode_(mode) {}
@@ -245,6 +246,17 @@ class PieceReader {
         return part(id, 0);
     }
 
+    // Is a term of the sum a product of what varies?
+    bool has_product(NodeId id, int depth) {
+        constexpr ir::OpSet sums{Op::Add, Op::Sub, Op::Neg};
+        const ir::Node node = graph_[id];
+        if (too_much(depth)) return false;
+        if (node.op == Op::Mul) return varies(graph_.arg(id, 0)) && varies(graph_.arg(id, 1));
+        return sums[node.op] && std::ranges::any_of(graph_.args(id), [&](NodeId arg) {
+                   return has_product(arg, depth + 1);
+               });
+    }
+
     Affine component(NodeId id, int i, int depth) {
         if (too_much(depth) || !varies(id)) return {};
         const ir::Node node = graph_[id];
@@ -261,6 +273,7 @@ class PieceReader {
         switch (how_of_op[node.op]) {
         case How::Negative: return add({}, arg(0), -1);
         case How::Sum: {
+            if (mode_.turns && depth > 0 && has_product(id, depth)) return part(id, i);
             const Affine first = arg(0); // visits in one order: ways are counted
             return add(first, arg(1), node.op == Op::Add ? 1 : -1);
         }
@@ -416,8 +429,10 @@ class PieceReader {
 std::optional<Pieces> by_pieces(Graph &graph, const std::vector<NodeId> &of, int &steps) {
     std::optional<Pieces> best;
     double least = 0; // the best's norm
-    for (const PieceReader::Mode mode :
-         {PieceReader::Mode{true, true}, {true, false}, {false, false}}) {
+    for (const PieceReader::Mode mode : {PieceReader::Mode{true, true, false},
+                                         {true, false, false},
+                                         {false, false, false},
+                                         {true, true, true}}) {
         const auto found = PieceReader(graph, steps, mode).read(of);
         // Parts of several vectors have a norm that is not known here.
         const double worse = found && found->parts.size() > 1 ? 1 + 1e-6 : 1;

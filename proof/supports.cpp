@@ -78,6 +78,13 @@ void Supports::follow(const Instruction &in) {
     }
 }
 
+bool Supports::apart(Slot value, Slot vector, unsigned components) const {
+    bool out = true;
+    for (int c = 0; c < int(tape_.size[vector]); ++c)
+        out = out && (!(components >> c & 1) || apart(all(value), at(vector, c)));
+    return out;
+}
+
 std::uint32_t Supports::groups(const std::vector<Slot> &args) const {
     if (args.size() > 16) return 0;
     std::vector<int> group(args.size());

@@ -16,6 +16,8 @@ class Supports {
     void make_base(Slot s);
     // After an instruction's slot is made: from its arguments.
     void follow(const Instruction &instruction);
+    // Do these components of a vector, a bit each, depend on other coordinates than a value does?
+    bool apart(Slot value, Slot vector, unsigned components) const;
     // Two bits an argument: arguments of different numbers depend on different coordinates.
     std::uint32_t groups(const std::vector<Slot> &args) const;
 

@@ -79,7 +79,7 @@ Slot Flattener::emit(Scope &scope, Instruction instruction) {
     for (Slot s : instruction.args) instruction.varies = instruction.varies || varies[s];
     instruction.out = fresh(instruction.type, instruction.varies);
     Slot out = instruction.out;
-    constexpr ir::OpSet sums{Op::Make, Op::Add, Op::Sub, Op::Mix};
+    constexpr ir::OpSet sums{Op::Make, Op::Add, Op::Sub, Op::Mix, Op::Atan2};
     if (sums[instruction.op] || instruction.form == Form::Norm || instruction.form == Form::PNorm)
         instruction.groups = supports.groups(instruction.args);
     supports.follow(instruction);

@@ -63,6 +63,20 @@ struct Instruction {
     std::vector<Slot> turned;
     // … and of a matrix product: a bound of the matrix' norm, whatever its numbers are.
     double norm = ir::rounding::infinity;
+    // Of a vector M(angle) v + c, where the angle varies (linear_maps.h): bounds of the norms of M and
+    // of dM/d angle, and the components of v that the latter takes (`moving`).
+    struct Turning {
+        enum class Way : std::uint8_t {
+            Any,
+            Apart, // the angle's gradient is at right angles to those of what M takes of v
+            Shear, // … of what moves, v has a multiple of an orthogonal Jacobian, and M is one
+        };
+        Slot vector = 0, angle = 0;
+        double norm = 1, by = 1;
+        unsigned moving = 0;
+        Way way = Way::Any;
+    };
+    std::optional<Turning> turning;
     std::optional<MeanOf<Slot>> mean; // of a scalar
     // Of a product that turns about an axis (around.h): it is no steeper than `by` times `vector`.
     struct AroundAxis {

@@ -79,6 +79,7 @@ Slot Flattener::emit_turned(Scope &scope, NodeId id, Instruction out) {
         still = still && !varies[constants.back()];
     }
     const Slot of = slot(scope, t->of);
+    if (t->turning) out.turning = turning_of(scope, *t);
     const bool may_stand_still = scope.loop || !cancelling.empty(); // as steps do
     if (!still && (!may_stand_still || (!is_matrix && pieces_of(id, {id}))))
         return emit_by_pieces(scope, id, std::move(out), {id});
@@ -91,6 +92,22 @@ Slot Flattener::emit_turned(Scope &scope, NodeId id, Instruction out) {
     const Slot made = emit(scope, out);
     if (still && t->whole && supports.is_base(of)) supports.make_base(made);
     return made;
+}
+
+Instruction::Turning Flattener::turning_of(Scope &scope, const LinearMap &map) {
+    using Way = Instruction::Turning::Way;
+    Instruction::Turning out{slot(scope, map.of),
+                             slot(scope, map.turning->angle),
+                             map.norm,
+                             map.turning->norm,
+                             map.turning->moving,
+                             Way::Any};
+    if (supports.apart(out.angle, out.vector, map.turning->columns))
+        out.way = Way::Apart;
+    else if (map.whole && supports.is_base(out.vector) &&
+             supports.apart(out.angle, out.vector, out.moving))
+        out.way = Way::Shear;
+    return out;
 }
 
 bool Flattener::step_cancels(NodeId wave) const {

@@ -121,10 +121,11 @@ class Adversary : public Chance {
             &Adversary::choices,     &Adversary::smooth, &Adversary::exponentials,
             &Adversary::powers,      &Adversary::ratios, &Adversary::conditions,
             &Adversary::repetitions, &Adversary::loops,  &Adversary::nested,
-            &Adversary::angles,      &Adversary::uses,   &Adversary::noise};
+            &Adversary::angles,      &Adversary::uses,   &Adversary::noise,
+            &Adversary::turns};
         return (this->*makers[kind % makers.size()])();
     }
-    static constexpr std::size_t kinds = 15;
+    static constexpr std::size_t kinds = 16;
 
   private:
     // A linear form whose borders others share.
@@ -349,6 +350,30 @@ class Adversary : public Chance {
                "\n let u = " + ease + "\n let a = h(i)\n let b = h(i + [1, 0])\n" +
                " let c = h(i + [0, 1])\n let d = h(i + 1)\n " + sum + "\n}\n" +
                field("n(" + at + ")" + (often() ? "" : " + 0.5 * n(2 * " + at + ")"));
+    }
+
+    // Vectors that turn with an angle of their own, off an axis or through it.
+    std::string turns() {
+        const std::string angle = of({"2 * p.y", "k * p.y", "1.5 * atan(p.z, p.x)", "length(p.xz)",
+                                      "p.x + p.y", "sin(3 * p.y)", "p.x * p.z", "-p.y + 0.3",
+                                      "2 * atan(p.z, p.x) + p.y", "0.5 * p.x", "3 * length(p)"});
+        const std::string q = of({"vec3(p.x, p.z, p.y)", "vec3(length(p.xz) - 1, p.y, 0)", "2 * p",
+                                  "p.zyx + 0.3", "vec3(p.xz, length(p))", "vec3(abs(p.xz), p.y)",
+                                  "0.6 * p.xyz + 0.8 * p.zxy", "vec3(p.xy - 0.5, p.x)"});
+        const std::string w =
+            of({"vec3(c * q.x + s * q.y, c * q.y - s * q.x, q.z)", "vec3(m * q.xy, q.z)",
+                "vec3(q.xy * m, q.z) + 0.1", "vec3(c * q.x - s * q.y, 0, s * q.x + c * q.y)",
+                "vec3(c * q.x + s * q.y, c * q.y + s * q.x, q.z)", "vec3(m * m * q.xy, q.x)",
+                "vec3(c * q.x, s * q.y, q.z)", "vec3(2 * (m * q.xy), -q.z)", "vec3(m * q.yz, c)"});
+        const std::string part =
+            of({"length(w) - 0.8", "length(w.xy) - 0.5", "length(vec2(abs(w.x) - 0.4, w.y)) - 0.1",
+                "w.x", "w.y + w.z", "max(abs(w.x), abs(w.y)) - 0.5", "length(w.xz - 0.3)"});
+        return param() + "implicit(p => {\n let a = " + angle + "\n let c = cos(a)\n" +
+               " let s = sin(a)\n let m = mat2([c, s], [-s, c])\n let q = " + q +
+               "\n let w = " + w + "\n 0.5 * (" + part + ")\n}, within: " +
+               of({"ball(2)", "ball(1.5)", "tube(Y, 1)", "ball(1, at: [0.2, 0, 0])",
+                   "aabb([-1.5, -1, -2], [1.5, 2, 1.5])"}) +
+               ")\n";
     }
 
     // Steps of steps.
