@@ -223,7 +223,41 @@ NodeId Graph::add_node(Op op, Type type, std::span<const NodeId> args, std::uint
     }
     const NodeId id = nodes_.add(node);
     reads_.push_back(reads_of(nodes_[id]));
+    of_scalars_.push_back(made_of_scalars(nodes_[id]));
     return id;
+}
+
+bool Graph::made_of_scalars(const Node &node) const {
+    constexpr OpSet made{Op::Make, Op::Splat, Op::Const},
+        by_component{Op::Add, Op::Sub, Op::Neg, Op::Mul,   Op::Div,
+                     Op::Mix, Op::Min, Op::Max, Op::Clamp, Op::Select};
+    if (!is_vector(node.type) || made[node.op]) return is_vector(node.type);
+    if (!by_component[node.op]) return false;
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+        const NodeId arg = args_[node.first + i];
+        if (is_vector(type(arg)) && !of_scalars_[arg.index]) return false;
+    }
+    return true;
+}
+
+std::optional<NodeId> Graph::scalar_part(NodeId vector, int i, int depth) {
+    constexpr int max_depth = 200;
+    if (!of_scalars_[vector.index] || depth > max_depth) return {};
+    const Node node = nodes_[vector];
+    if (node.op == Op::Make || node.op == Op::Splat || node.op == Op::Const)
+        return component(vector, i);
+    const std::uint64_t key = std::uint64_t(vector.index) * 4 + std::uint64_t(i);
+    if (const auto known = scalar_parts_.find(key); known != scalar_parts_.end())
+        return known->second;
+    const std::span<const NodeId> all = args(vector);
+    std::vector<NodeId> parts(all.begin(), all.end());
+    for (NodeId &part : parts) {
+        if (!is_vector(type(part))) continue;
+        const auto scalar = scalar_part(part, i, depth + 1);
+        if (!scalar) return {};
+        part = *scalar;
+    }
+    return scalar_parts_[key] = make(node.op, Type::Float, parts, node.payload);
 }
 
 NodeId Graph::folded(Op op, Type type, std::span<const NodeId> args, std::uint32_t payload) {

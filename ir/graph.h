@@ -164,6 +164,10 @@ class Graph {
     NodeId div(Pair of) { return div(of.a, of.b); }
     NodeId neg(NodeId a);
     NodeId component(NodeId vector, int i); // Swizzle of one
+    // The same as a scalar that no vector is computed for, where the vector is made of scalars by
+    // what goes component by component; nothing for others. So of `if a.x < b.x { a } else { b }`
+    // with a and b made of a distance and a material, the distance is a choice of distances.
+    std::optional<NodeId> scalar_part(NodeId vector, int i, int depth = 0);
     NodeId swizzle(NodeId vector, std::span<const int> components);
     NodeId splat(NodeId scalar, Type type);
     NodeId call(FunctionId function, std::span<const NodeId> args);
@@ -204,9 +208,12 @@ class Graph {
     // Where the node that is `equal` stands in slots_, or the next one of this hash will.
     template <class Equal> NodeId &slot_of(std::uint64_t hash, const Equal &equal);
     Reads reads_of(const Node &node) const;
+    bool made_of_scalars(const Node &node) const;
     Arena<Node> nodes_;
     std::vector<NodeId> args_;
     std::vector<Reads> reads_;
+    std::vector<bool> of_scalars_; // by node: a vector that scalar_part takes apart
+    std::unordered_map<std::uint64_t, NodeId> scalar_parts_;
     Arena<Constant> constants_;
     Arena<Function> functions_;
     Arena<Loop> loops_;

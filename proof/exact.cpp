@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 namespace fathom::proof {
 
@@ -34,6 +35,25 @@ bool is_exact(const Graph &graph, const Polynomial &sum) {
 bool is_exact(Graph &graph, NodeId scalar) {
     const auto sum = polynomial(graph, scalar);
     return sum && is_exact(graph, *sum);
+}
+
+bool single_is_far_off(const Graph &graph, NodeId number) {
+    constexpr std::size_t max_nodes_of_number = 200;
+    constexpr ir::OpSet near{Op::Const,   Op::Param, Op::Time,   Op::Point, Op::Add,
+                             Op::Sub,     Op::Mul,   Op::Div,    Op::Neg,   Op::Abs,
+                             Op::Min,     Op::Max,   Op::Clamp,  Op::Make,  Op::Splat,
+                             Op::Swizzle, Op::Dot,   Op::MatMul, Op::ToInt, Op::Mix,
+                             Op::Floor,   Op::Ceil,  Op::Round,  Op::Trunc, Op::Length};
+    std::vector<NodeId> todo{number};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second || is_whole(graph, id)) continue;
+        if (!near[graph[id].op] || seen.size() > max_nodes_of_number) return true;
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    return false;
 }
 
 bool exactly_same(Graph &graph, NodeId a, NodeId b) {

@@ -83,6 +83,10 @@ void Step::remainder() {
             set(c, {-most, most}, none);
             continue;
         }
+        if (in.scatters && norm(0) == 0 && norm(1) == 0) {
+            set(c, {std::min(m.lo, 0.0), std::max(m.hi, 0.0)}, none);
+            continue;
+        }
         Interval turns = floor(x / m);
         if (by_ways()) {
             turns = one_of(turns);

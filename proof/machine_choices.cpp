@@ -181,6 +181,10 @@ void Step::trunc_of() {
 void Step::fraction() {
     bool jumps = false;
     for (int c = 0; c < n; ++c) {
+        if (in.scatters && norm(0) == 0) {
+            set(c, {0, 1}, none);
+            continue;
+        }
         Interval x = value(0, c), whole = floor(x);
         if (by_ways()) {
             whole = one_of(whole);

@@ -3,6 +3,7 @@
 
 #include "proof/borders.h"
 #include "proof/discontinuities.h"
+#include "proof/exact.h"
 #include "proof/flattener.h"
 #include "proof/forms.h"
 #include "proof/polar.h"
@@ -152,6 +153,8 @@ Slot Flattener::flatten_node(Scope &scope, NodeId id) {
     out.node = id;
     out.cancels = cancelling.contains(id);
     out.stepped = stepped.contains(id);
+    if (node.op == Op::Fract || node.op == Op::Mod)
+        out.scatters = single_is_far_off(graph, graph.arg(id, 0));
     switch (look_of_op[node.op]) {
     case Look::Point: out.varies = true; return emit(scope, out);
     case Look::Call: return call(scope, id, ir::FunctionId{node.payload});

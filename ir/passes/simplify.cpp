@@ -62,7 +62,10 @@ NodeId simple_swizzle(Graph &graph, Type type, NodeId vector, std::uint32_t mask
             parts.push_back(swizzle_component(node.payload, swizzle_component(mask, i)));
         return graph.swizzle(graph.arg(vector, 0), parts);
     }
-    if (node.op != Op::Make && node.op != Op::Splat) return {};
+    const bool is_made = node.op == Op::Make || node.op == Op::Splat;
+    if (size == 1 && !is_made && node.op != Op::Const)
+        if (const auto part = graph.scalar_part(vector, swizzle_component(mask, 0))) return *part;
+    if (!is_made) return {};
     std::vector<NodeId> parts;
     for (int i = 0; i < size; ++i)
         parts.push_back(part_of(graph, vector, swizzle_component(mask, i)));

@@ -239,3 +239,26 @@ TEST_CASE("a jump is one beside large numbers, too") {
     CHECK(!bounded(s, s.g.make(Op::Select, {less, s.g.add(large, s.n(5)), large}), box));
     CHECK(bounded(s, s.g.make(Op::Select, {less, s.g.add(large, s.x), large}), box));
 }
+
+TEST_CASE("of hashes by sines single precision makes others, so their range alone is known") {
+    Scenery s;
+    proof::Work work;
+    const proof::Ranges ranges = proof::ranges_of(s.scene, work);
+    const auto value = [&](NodeId field, double at) {
+        proof::Flattening context{s.g, work};
+        const proof::Tape tape = proof::flatten(context, field);
+        proof::Machine machine(tape, ranges);
+        machine.run(Cell{{Interval(at), Interval(0.0), Interval(0.0)}});
+        return machine.value(0);
+    };
+    const NodeId n = s.call(Op::Floor, s.x);
+    const auto fract = [&](NodeId of) { return s.call(Op::Fract, of); };
+    const NodeId by_sine = fract(s.g.mul(s.sin(s.g.mul(n, s.n(12.9898))), s.n(43758.5453)));
+    CHECK(value(by_sine, 7.3) == Interval(0, 1));
+    const NodeId again = fract(s.g.mul(fract(s.g.mul(n, s.n(0.1031))), s.n(33.33)));
+    CHECK(value(again, 7.3) == Interval(0, 1));
+    const NodeId rest = s.g.make(Op::Mod, {s.g.mul(s.sin(n), s.n(43758.5453)), s.n(2)});
+    CHECK(value(rest, 7.3) == Interval(0, 2));
+    CHECK(value(fract(s.g.mul(n, s.n(0.5))), 7.3).width() < 1e-9); // exact
+    CHECK(value(fract(s.sin(s.x)), 0.5).width() < 1e-9);             // moves with the point
+}
