@@ -287,18 +287,37 @@ std::optional<int> Border::sign_of_count(NodeId count) {
 Interval Border::range_of(NodeId id) const {
     if (const auto number = graph.as_number(id)) return *number;
     if (const auto it = ranges.find(id); it != ranges.end()) return it->second;
-    constexpr ir::OpSet known{Op::Add, Op::Sub, Op::Mul, Op::Neg, Op::Abs, Op::Min, Op::Max};
-    const Op op = graph[id].op;
-    if (!known[op] || graph[id].type != ir::Type::Float) return Interval::everything();
-    const Interval a = range_of(graph.arg(id, 0)),
-                   b = graph[id].count > 1 ? range_of(graph.arg(id, 1)) : a;
-    return ranges[id] = op == Op::Add   ? a + b
-                        : op == Op::Sub ? a - b
-                        : op == Op::Mul ? a * b
-                        : op == Op::Neg ? -a
-                        : op == Op::Abs ? abs(a)
-                        : op == Op::Min ? min(a, b)
-                                        : max(a, b);
+    return ranges[id] = found_range(id);
+}
+
+Interval Border::found_range(NodeId id) const {
+    constexpr ir::OpSet waves{Op::Sin, Op::Cos}, parts{Op::Hash, Op::Smoothstep};
+    const ir::Node node = graph[id];
+    if (node.op == Op::Length || node.op == Op::Dot) {
+        const NodeId v = graph.arg(id, 0), w = graph.arg(id, int(node.count) - 1);
+        Interval sum(0.0);
+        for (int i = 0; i < ir::components(graph[v].type); ++i) {
+            const Interval x = range_of(component_of(graph, v, i));
+            sum = sum + (v == w ? square(x) : x * range_of(component_of(graph, w, i)));
+        }
+        return node.op == Op::Length ? sqrt(sum) : sum;
+    }
+    if (waves[node.op]) return {-1, 1};
+    if (parts[node.op]) return {0, 1};
+    if (node.type != ir::Type::Float) return Interval::everything();
+    const auto arg = [&](int i) { return range_of(graph.arg(id, i)); };
+    if (node.op == Op::Add) return arg(0) + arg(1);
+    if (node.op == Op::Sub) return arg(0) - arg(1);
+    if (node.op == Op::Mul)
+        return graph.arg(id, 0) == graph.arg(id, 1) ? square(arg(0)) : arg(0) * arg(1);
+    if (node.op == Op::Neg) return -arg(0);
+    if (node.op == Op::Abs) return abs(arg(0));
+    if (node.op == Op::Min) return min(arg(0), arg(1));
+    if (node.op == Op::Max) return max(arg(0), arg(1));
+    if (node.op == Op::Clamp) return min(max(arg(0), arg(1)), arg(2));
+    if (node.op == Op::Select) return hull(arg(1), arg(2));
+    if (node.op == Op::Sqrt) return sqrt(max(arg(0), Interval(0.0)));
+    return Interval::everything();
 }
 
 std::optional<NodeId> Border::outermost(Op extreme, NodeId a, NodeId b) const {

@@ -161,6 +161,7 @@ struct Border {
     bool reads_little(NodeId id) const;
     // What a scalar is between, made of numbers and unknown steps; nothing is known of the point.
     Interval range_of(NodeId id) const;
+    Interval found_range(NodeId id) const;
     // The first extreme's argument that is never beyond the other, but for rounding.
     std::optional<NodeId> outermost(Op extreme, NodeId a, NodeId b) const;
 };

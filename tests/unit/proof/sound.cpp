@@ -260,5 +260,5 @@ TEST_CASE("of hashes by sines single precision makes others, so their range alon
     const NodeId rest = s.g.make(Op::Mod, {s.g.mul(s.sin(n), s.n(43758.5453)), s.n(2)});
     CHECK(value(rest, 7.3) == Interval(0, 2));
     CHECK(value(fract(s.g.mul(n, s.n(0.5))), 7.3).width() < 1e-9); // exact
-    CHECK(value(fract(s.sin(s.x)), 0.5).width() < 1e-9);             // moves with the point
+    CHECK(value(fract(s.sin(s.x)), 0.5).width() < 1e-9);           // moves with the point
 }
