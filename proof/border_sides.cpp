@@ -332,6 +332,12 @@ std::optional<NodeId> Border::outermost(Op extreme, NodeId a, NodeId b) const {
     return {};
 }
 
+std::optional<NodeId> Border::beyond(NodeId x, NodeId least, NodeId most) const {
+    if (outermost(Op::Min, x, most) == most) return most;
+    if (outermost(Op::Max, x, least) == least) return graph.make(Op::Min, {least, most});
+    return {};
+}
+
 bool Border::reads_little(NodeId id) const {
     for (NodeId var : graph.free_vars(id))
         if (var == little || var == little_angle) return true;

@@ -164,6 +164,8 @@ struct Border {
     Interval found_range(NodeId id) const;
     // The first extreme's argument that is never beyond the other, but for rounding.
     std::optional<NodeId> outermost(Op extreme, NodeId a, NodeId b) const;
+    // The limit that x is never within of, but for rounding, of min(max(x, least), most).
+    std::optional<NodeId> beyond(NodeId x, NodeId least, NodeId most) const;
 };
 
 } // namespace fathom::proof

@@ -244,6 +244,15 @@ std::optional<NodeId> Canonical::decided(const ir::Node &node, const std::vector
         extremes{Op::Min, Op::Max};
     if (node.op == Op::Select && graph.is_constant(args[0]))
         return args[graph.constant_of(args[0]).value[0] != 0 ? 1 : 2];
+    if (border && node.type == ir::Type::Float) {
+        if (node.op == Op::Clamp) return border->beyond(args[0], args[1], args[2]);
+        const auto from = node.op == Op::Smoothstep ? graph.as_number(args[0]) : std::nullopt,
+                   to = from ? graph.as_number(args[1]) : std::nullopt;
+        if (to && *from < *to) {
+            const auto end = border->beyond(args[2], args[0], args[1]);
+            return end ? std::optional(graph.number(*end == args[1] ? 1 : 0)) : std::nullopt;
+        }
+    }
     if (!border || (!compares[node.op] && !extremes[node.op])) return {};
     const ir::Type type = graph[args[0]].type;
     if (type != ir::Type::Float && type != ir::Type::Int) return {};
