@@ -291,6 +291,13 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             "go from one entry of a list to the next without a jump, with the place limited before "
             "`floor`: `let x = clamp(…, 0, last)`, then `mix(list[int(floor(x))], "
             "list[int(floor(x)) + 1], fract(x))`; ";
+        constexpr ir::OpSet steps{Op::Floor, Op::Round, Op::Ceil, Op::Fract, Op::Mod};
+        const std::string meeting =
+            b.cause && steps[*b.cause]
+                ? "where copies differ from cell to cell keep the distance below the way to the "
+                  "next copy, as in `min(d, 0.2)`, or let `repeat` look at the neighbours: "
+                  "`.repeat([1, 0, 0], (s, id) => …)`; "
+                : "make both sides agree there, ";
         const auto [one_side, other_side] = two_points(b.side_a, b.side_b, dims);
         const auto [one, other] = two_numbers(b.value_a, b.value_b);
         const std::string held =
@@ -300,8 +307,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                     report(id, Code::FieldJump, what + " jumps near " + point_text(b.where, dims)))
                 d->note("it is " + one + " at " + one_side + " and " + other + " at " + other_side +
                         held + ": " + cause)
-                    .help((by_list ? between : "make both sides agree there, ") +
-                          "keep the jump out of the region with " +
+                    .help((by_list ? between : meeting) + "keep the jump out of the region with " +
                           (has_region ? "`within:`, " : "`.within(…)`, ") + assume);
         } else if (Diagnostic *d = report(id, Code::LipschitzUnbounded,
                                           "it cannot be proved that " + what +
