@@ -100,10 +100,11 @@ using Terms = std::map<unsigned, Polynomial>;
 
 class Interpolator {
   public:
-    explicit Interpolator(Graph &graph) : graph_(graph), expansion_(graph) {}
+    Interpolator(Graph &graph, Work &work) : graph_(graph), work_(work), expansion_(graph, &work) {}
 
     std::optional<Interpolation> of(NodeId scalar) {
         const unsigned read = reads(scalar);
+        work_.take(reads_.size());
         if ((read & Other) || !(read & Steps) || !(read & Axes)) return {};
         const auto sum = terms(scalar);
         if (!sum) return {};
@@ -257,6 +258,7 @@ class Interpolator {
     }
 
     Graph &graph_;
+    Work &work_;
     Expansion expansion_;
     std::vector<Axis> axes_;
     int products_ = 0;
@@ -266,8 +268,8 @@ class Interpolator {
 
 } // namespace
 
-std::optional<Interpolation> interpolation(Graph &graph, NodeId scalar) {
-    return Interpolator(graph).of(scalar);
+std::optional<Interpolation> interpolation(Graph &graph, NodeId scalar, Work &work) {
+    return Interpolator(graph, work).of(scalar);
 }
 
 } // namespace fathom::proof

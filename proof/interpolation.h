@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ir/graph.h"
+#include "proof/work.h"
 
 #include <optional>
 #include <vector>
@@ -17,6 +18,6 @@ struct Interpolation {
     std::vector<ir::NodeId> along; // the scalars x
     double steepness = 0; // >= its slope by all x together, over the width of the corners' range
 };
-std::optional<Interpolation> interpolation(ir::Graph &graph, ir::NodeId scalar);
+std::optional<Interpolation> interpolation(ir::Graph &graph, ir::NodeId scalar, Work &work);
 
 } // namespace fathom::proof

@@ -445,7 +445,13 @@ NodeId simple_select(const Made &n) {
     if (n.type == Type::Float)
         if (const NodeId ratio = sine_ratio_by_cases(n.graph, n.args[0], n.args[1], n.args[2]))
             return ratio;
-    return n.args[1] == n.args[2] ? n.args[1] : NodeId{};
+    if (n.args[1] == n.args[2]) return n.args[1];
+    const bool orders = n.op_of(0) == Op::Less || n.op_of(0) == Op::LessEqual;
+    if (!orders || n.type != Type::Float) return {};
+    const NodeId u = n.inside(0), v = n.graph.arg(n.args[0], 1);
+    if (n.args[1] == u && n.args[2] == v) return n.make(Op::Min, {v, u});
+    if (n.args[1] == v && n.args[2] == u) return n.make(Op::Max, {u, v});
+    return {};
 }
 
 NodeId of_its_type(const Made &n) {

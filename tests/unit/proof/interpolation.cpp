@@ -12,6 +12,11 @@ using namespace fathom::test;
 
 namespace {
 
+std::optional<proof::Interpolation> interpolation(Graph &graph, NodeId scalar) {
+    proof::Work work;
+    return proof::interpolation(graph, scalar, work);
+}
+
 // A weight as an expression, as a function, and by its slope.
 struct Weight {
     const char *name;
@@ -125,8 +130,8 @@ TEST_CASE("interpolated numbers are no steeper than proved, and nearly that") {
             INFO(by.name << ", " << axes);
             const double most = steepest(by, axes);
             Lattice a, b;
-            const auto means = proof::interpolation(a.s.g, a.means(by, axes - 1)),
-                       products = proof::interpolation(b.s.g, b.products(by, axes));
+            const auto means = interpolation(a.s.g, a.means(by, axes - 1)),
+                       products = interpolation(b.s.g, b.products(by, axes));
             REQUIRE(means);
             REQUIRE(products);
             CHECK(means->corners.size() == 1u << axes);
@@ -142,10 +147,10 @@ TEST_CASE("corners are what they were, however they are written") {
     Lattice l;
     Graph &g = l.s.g;
     const NodeId a = l.corner(0), b = l.corner(1), u = l.weight(weights[1], 0);
-    const auto sum = proof::interpolation(g, g.add(a, g.mul(g.sub(b, a), u)));
+    const auto sum = interpolation(g, g.add(a, g.mul(g.sub(b, a), u)));
     REQUIRE(sum);
     CHECK(sum->corners == std::vector<NodeId>{a, b});
-    const auto back = proof::interpolation(g, g.add(g.mul(a, u), g.mul(b, g.sub(l.s.n(1), u))));
+    const auto back = interpolation(g, g.add(g.mul(a, u), g.mul(b, g.sub(l.s.n(1), u))));
     REQUIRE(back);
     CHECK(back->corners == std::vector<NodeId>{b, a});
 }
@@ -156,7 +161,7 @@ TEST_CASE("what is no interpolation between numbers that stand still is not take
     const NodeId a = l.corner(0), b = l.corner(1);
     const NodeId f = g.component(l.fraction, 0), h = g.component(l.fraction, 1);
     const auto mix = [&](NodeId x, NodeId y, NodeId t) {
-        return proof::interpolation(g, g.make(Op::Mix, {x, y, t}));
+        return interpolation(g, g.make(Op::Mix, {x, y, t}));
     };
     const auto number = [&](double x) { return g.number(x); };
     REQUIRE(mix(a, b, f));
@@ -167,6 +172,6 @@ TEST_CASE("what is no interpolation between numbers that stand still is not take
     CHECK(!mix(a, g.mul(b, g.mul(h, h)), g.mul(f, h)));                   // two weights of one axis
     CHECK(!mix(a, b, g.mul(f, l.s.call(Op::Abs, f))));                    // no polynomial
     CHECK(!mix(a, b, l.s.y));
-    CHECK(!proof::interpolation(g, a)); // no fraction
-    CHECK(!proof::interpolation(g, f)); // no step
+    CHECK(!interpolation(g, a)); // no fraction
+    CHECK(!interpolation(g, f)); // no step
 }
