@@ -306,6 +306,8 @@ Interval Border::found_range(NodeId id) const {
     if (parts[node.op]) return {0, 1};
     if (node.type != ir::Type::Float) return Interval::everything();
     const auto arg = [&](int i) { return range_of(graph.arg(id, i)); };
+    if (node.op == Op::Add || node.op == Op::Sub)
+        if (const auto terms = terms_of(graph, id)) return range_of_terms(*terms);
     if (node.op == Op::Add) return arg(0) + arg(1);
     if (node.op == Op::Sub) return arg(0) - arg(1);
     if (node.op == Op::Mul)
@@ -318,6 +320,28 @@ Interval Border::found_range(NodeId id) const {
     if (node.op == Op::Select) return hull(arg(1), arg(2));
     if (node.op == Op::Sqrt) return sqrt(max(arg(0), Interval(0.0)));
     return Interval::everything();
+}
+
+// A sum term by term, but the square of a number and the number together: x^2 + m x is
+// (x + m/2)^2 - m^2/4.
+Interval Border::range_of_terms(const std::vector<Term> &terms) const {
+    std::map<NodeId, std::array<double, 2>> squares; // of x, and of x^2
+    Interval sum(0.0);
+    for (const Term &term : terms) {
+        const auto &x = term.factors;
+        if (x.size() == 1 || (x.size() == 2 && x[0] == x[1])) {
+            squares[x[0]][x.size() - 1] += term.by;
+            continue;
+        }
+        Interval product(term.by);
+        for (NodeId factor : x) product = product * range_of(factor);
+        sum = sum + product;
+    }
+    for (const auto &[x, by] : squares) {
+        const Interval of = range_of(x), a(by[1]), b(by[0]), half = b / (Interval(2.0) * a);
+        sum = sum + (by[1] == 0 ? b * of : a * (square(of + half) - square(half)));
+    }
+    return sum;
 }
 
 std::optional<NodeId> Border::outermost(Op extreme, NodeId a, NodeId b) const {

@@ -4,6 +4,7 @@
 
 #include "ir/graph.h"
 #include "ir/interval.h"
+#include "proof/continuity.h"
 #include "proof/work.h"
 
 #include <map>
@@ -162,6 +163,7 @@ struct Border {
     // What a scalar is between, made of numbers and unknown steps; nothing is known of the point.
     Interval range_of(NodeId id) const;
     Interval found_range(NodeId id) const;
+    Interval range_of_terms(const std::vector<Term> &terms) const;
     // The first extreme's argument that is never beyond the other, but for rounding.
     std::optional<NodeId> outermost(Op extreme, NodeId a, NodeId b) const;
     // The limit that x is never within of, but for rounding, of min(max(x, least), most).

@@ -246,11 +246,15 @@ std::optional<NodeId> Canonical::decided(const ir::Node &node, const std::vector
         return args[graph.constant_of(args[0]).value[0] != 0 ? 1 : 2];
     if (border && node.type == ir::Type::Float) {
         if (node.op == Op::Clamp) return border->beyond(args[0], args[1], args[2]);
-        const auto from = node.op == Op::Smoothstep ? graph.as_number(args[0]) : std::nullopt,
-                   to = from ? graph.as_number(args[1]) : std::nullopt;
-        if (to && *from < *to) {
-            const auto end = border->beyond(args[2], args[0], args[1]);
-            return end ? std::optional(graph.number(*end == args[1] ? 1 : 0)) : std::nullopt;
+        if (node.op == Op::Smoothstep) {
+            for (const bool rises : {true, false}) {
+                const NodeId least = args[rises ? 0 : 1], most = args[rises ? 1 : 0];
+                if (!(border->range_of(least).hi < border->range_of(most).lo)) continue;
+                if (border->outermost(Op::Min, args[2], most) == most) return graph.number(rises);
+                if (border->outermost(Op::Max, args[2], least) == least)
+                    return graph.number(!rises);
+            }
+            return {};
         }
     }
     if (!border || (!compares[node.op] && !extremes[node.op])) return {};

@@ -122,10 +122,10 @@ class Adversary : public Chance {
             &Adversary::powers,      &Adversary::ratios, &Adversary::conditions,
             &Adversary::repetitions, &Adversary::loops,  &Adversary::nested,
             &Adversary::angles,      &Adversary::uses,   &Adversary::noise,
-            &Adversary::turns};
+            &Adversary::turns,       &Adversary::cells};
         return (this->*makers[kind % makers.size()])();
     }
-    static constexpr std::size_t kinds = 16;
+    static constexpr std::size_t kinds = 17;
 
   private:
     // A linear form whose borders others share.
@@ -374,6 +374,33 @@ class Adversary : public Chance {
                of({"ball(2)", "ball(1.5)", "tube(Y, 1)", "ball(1, at: [0.2, 0, 0])",
                    "aabb([-1.5, -1, -2], [1.5, 2, 1.5])"}) +
                ")\n";
+    }
+
+    // Copies that differ from cell to cell, hidden at the cells' borders, or nearly.
+    std::string cells() {
+        const std::string r = "(" + between(0.05, 0.3) + " + " + between(0, 0.3) + " * hash(id))";
+        const std::string d =
+            of({"length(q) - R", "length(max(abs(q) - R, 0)) + min(max(q.x, q.y) - R, 0)",
+                "max(abs(q.x), abs(q.y)) - R", "length(q - 0.1) - R", "length(q.xy) - R",
+                "length(vec2(q.x * q.x + q.x, q.y)) - R", "sqrt(q.x * q.x + q.y * q.y + 0.01) - R",
+                "length(q * (1 + q.x)) - R", "length(vec2(q.x + 0.3 * (id.y % 2), q.y)) - R"});
+        const std::string m = between(0.05, 0.5);
+        const std::string kept =
+            of({"min(d, M)", "max(-d, -M)", "clamp(d, -1, M)", "clamp(-5 * d, -M, 0)",
+                "smoothstep(M, 0, d)", "smoothstep(-0.1, M, d)", "smoothstep(R, 0, length(q))",
+                "min(d, 0.5 - max(abs(q.x), abs(q.y)) + M)", "min(d, M - abs(q.x) + 0.2)",
+                "max(M - d, 0) * hash(id)", "if d < M { d } else { M }"});
+        std::string text =
+            "let id = floor(p.xz)\n let q = " +
+            std::string(of({"fract(p.xz) - 0.5", "p.xz - id - 0.5", "fract(p.xz)"})) +
+            "\n let d = " + d + "\n 0.4 * (" + kept + ")";
+        for (const auto &[name, value] : {std::pair{'R', r}, std::pair{'M', m}})
+            for (std::size_t at = text.find(name); at != text.npos;
+                 at = text.find(name, at + value.size()))
+                text.replace(at, 1, value);
+        return param() + "implicit(p => {\n " + text + " + " + of({"p.y", "0", "0.5 * p.x"}) +
+               "\n}, within: " +
+               of({"ball(2)", "everywhere", "aabb([-1.5, -1, -2], [1.5, 2, 1.5])"}) + ")\n";
     }
 
     // Steps of steps.
