@@ -39,11 +39,10 @@ bool is_exact(Graph &graph, NodeId scalar) {
 
 bool single_is_far_off(const Graph &graph, NodeId number) {
     constexpr std::size_t max_nodes_of_number = 200;
-    constexpr ir::OpSet near{Op::Const,   Op::Param, Op::Time,   Op::Point, Op::Add,
-                             Op::Sub,     Op::Mul,   Op::Div,    Op::Neg,   Op::Abs,
-                             Op::Min,     Op::Max,   Op::Clamp,  Op::Make,  Op::Splat,
-                             Op::Swizzle, Op::Dot,   Op::MatMul, Op::ToInt, Op::Mix,
-                             Op::Floor,   Op::Ceil,  Op::Round,  Op::Trunc, Op::Length};
+    constexpr ir::OpSet near{Op::Const, Op::Param, Op::Time,  Op::Point,   Op::Add,   Op::Sub,
+                             Op::Mul,   Op::Div,   Op::Neg,   Op::Abs,     Op::Min,   Op::Max,
+                             Op::Clamp, Op::Make,  Op::Splat, Op::Swizzle, Op::Dot,   Op::MatMul,
+                             Op::ToInt, Op::Mix,   Op::Floor, Op::Ceil,    Op::Round, Op::Trunc};
     std::vector<NodeId> todo{number};
     std::unordered_set<NodeId> seen;
     while (!todo.empty()) {

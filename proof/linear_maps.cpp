@@ -273,6 +273,13 @@ std::optional<LinearMap::Turning> turning(Graph &graph, std::vector<std::array<N
             const auto entry =
                 polynomial(graph, ir::substitute(graph, row[column], {{cosine, u}, {sine, v}}));
             if (!entry) return {};
+            const auto hides_angle = [&](NodeId factor) { // in what is no product
+                const std::vector<NodeId> vars = graph.free_vars(factor);
+                return factor != u && factor != v &&
+                       (std::ranges::count(vars, u) > 0 || std::ranges::count(vars, v) > 0);
+            };
+            for (const auto &[factors, by] : *entry)
+                if (std::ranges::any_of(factors, hides_angle)) return {};
             Polynomial change;
             for (const auto &[factors, by] : *entry)
                 for (std::size_t i = 0; i < factors.size(); ++i) {

@@ -23,8 +23,8 @@ struct LinearMap {
     struct Turning {
         ir::NodeId angle;
         double norm = 1; // a bound of the spectral norm of dM/d angle
-        unsigned columns = 0,
-                 moving = 0; // a bit each: those of M, and of dM/d angle, that are not 0
+        // A bit a column: those of M, and those of dM/d angle, that are not 0.
+        unsigned columns = 0, moving = 0;
     };
     std::optional<Turning> turning{};
 };

@@ -181,11 +181,12 @@ void Step::trunc_of() {
 void Step::fraction() {
     bool jumps = false;
     for (int c = 0; c < n; ++c) {
-        if (in.scatters && norm(0) == 0) {
+        constexpr double most = 1000; // … of which single precision has the fraction to 1/10'000
+        Interval x = value(0, c), whole = floor(x);
+        if (norm(0) == 0 && (in.scatters || x.magnitude() > most)) {
             set(c, {0, 1}, none);
             continue;
         }
-        Interval x = value(0, c), whole = floor(x);
         if (by_ways()) {
             whole = one_of(whole);
             const bool one = whole.is_point() && whole.finite();

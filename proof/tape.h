@@ -54,8 +54,8 @@ struct Instruction {
     ir::Type type = ir::Type::Float;
     bool varies = false;  // with the point
     bool stepped = false; // an angle that steps alone read (polar.h)
-    bool scatters =
-        false; // the fraction of a number that single precision may have far off (exact.h)
+    // Of a Fract or Mod: single precision may have its argument so wrong that it is any (exact.h).
+    bool scatters = false;
     bool cancels = false; // a step whose jumps the result does not see (discontinuities.h)
     Slot out = 0;
     std::vector<Slot> args;
