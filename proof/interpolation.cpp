@@ -183,7 +183,7 @@ class Interpolator {
         for (std::size_t axis = 0; axis < axes_.size(); ++axis)
             if (read == 1u << axis) return weight(id, axis);
         const auto arg = [&](int i) { return terms(graph_.arg(id, i)); };
-        if (node.op == Op::Neg) return sum({}, arg(0), -1);
+        if (node.op == Op::Neg) return sum(Terms{}, arg(0), -1);
         if (node.op == Op::Add) return sum(arg(0), arg(1), 1);
         if (node.op == Op::Sub) return sum(arg(0), arg(1), -1);
         if (node.op == Op::Mul) return product_of(arg(0), arg(1));

@@ -152,6 +152,9 @@ TEST_CASE("corners are what they were, however they are written") {
     CHECK(sum->corners == std::vector<NodeId>{a, b});
     const auto back = interpolation(g, g.add(g.mul(a, u), g.mul(b, g.sub(l.s.n(1), u))));
     REQUIRE(back);
+    const auto less = interpolation(g, g.add(a, g.mul(g.neg(g.add(g.neg(b), a)), u)));
+    REQUIRE(less);
+    CHECK(less->corners == std::vector<NodeId>{a, b});
     CHECK(back->corners == std::vector<NodeId>{b, a});
 }
 
