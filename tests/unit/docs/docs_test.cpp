@@ -35,7 +35,8 @@ std::vector<std::string> programs(const std::string &page) {
 TEST_CASE("the programs on the pages of docs/ work") {
     const std::filesystem::path root = FATHOM_SOURCE_DIR;
     std::size_t count = 0;
-    for (const char *page : {"docs/language.md", "docs/tutorial.md", "docs/from-fathom.md"}) {
+    for (const char *page : {"docs/language.md", "docs/tutorial.md", "docs/from-fathom.md",
+                             "docs/from-shadertoy.md"}) {
         for (const std::string &program : programs(file_text(root / page))) {
             INFO(page << ":\n" << program);
             driver::Compilation c =
