@@ -382,24 +382,27 @@ void Machine::hold_turning(const Instruction &instruction) {
     double most = moves + turns;
     if (way == Way::Apart) most = std::hypot(moves, turns);
     if (way == Way::Shear) most = (turns + std::hypot(turns, 2 * moves)) / 2;
-    most = up(most, 8);
-    if (!(most < norm_[out])) return;
-    norm_[out] = most;
-    for (std::uint32_t i = tape_.first[out]; i < tape_.first[out] + tape_.size[out]; ++i)
+    hold_norm(out, up(most, 8));
+}
+
+// A bound of the norm beside the rule's own.
+void Machine::hold_norm(Slot s, double most) {
+    if (!(most < norm_[s])) return;
+    norm_[s] = most;
+    for (std::uint32_t i = tape_.first[s]; i < tape_.first[s] + tape_.size[s]; ++i)
         for (Interval &own : grad_[i]) own = meet(own, Interval(-most, most));
 }
 
 // A product about an axis on which its angle is singular, and it is not (around.h).
 void Machine::hold_around(const Instruction &instruction) {
     const Slot out = instruction.out, vector = instruction.around->vector;
-    const std::uint32_t at = tape_.first[out], part = tape_.first[vector];
+    const std::uint32_t part = tape_.first[vector];
     const double most = up(times(instruction.around->by, norm_[vector]), 4);
     if (!(most < norm_[out]) || trouble_[out] == Trouble::Overflow) return;
     if ((tape_.near && !near_) || odd_[part] || odd_[part + 1]) return;
-    norm_[out] = most;
     trouble_[out] = Trouble::None;
     cause_[out] = NodeId();
-    for (Interval &own : grad_[at]) own = meet(own, Interval(-most, most));
+    hold_norm(out, most);
 }
 
 // Between values at corners that stand still, wherever they do not jump (interpolation.h).
@@ -415,11 +418,8 @@ void Machine::hold_between(const Instruction &instruction) {
         all = hull(all, value(corner, 0));
     }
     value_[at] = meet(value_[at], all);
-    const double slope = times(instruction.between->by, norm_[vector]),
-                 most = up(times(slope, (Interval(all.hi) - Interval(all.lo)).hi), 4);
-    if (!(most < norm_[out])) return;
-    norm_[out] = most;
-    for (Interval &own : grad_[at]) own = meet(own, Interval(-most, most));
+    const double slope = times(instruction.between->by, norm_[vector]);
+    hold_norm(out, up(times(slope, (Interval(all.hi) - Interval(all.lo)).hi), 4));
 }
 
 // |grad v| <= c v, v >= 0: of exp(u) with c the norm of u, of sums with the greater of both, of

@@ -129,6 +129,7 @@ class Machine {
     void step(const Instruction &instruction);
     void finish(const Instruction &instruction, double norm, bool odd_used);
     void hold_mean(const Instruction &instruction);
+    void hold_norm(Slot s, double most);
     void hold_turning(const Instruction &instruction);
     void hold_around(const Instruction &instruction);
     void hold_between(const Instruction &instruction);

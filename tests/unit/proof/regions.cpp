@@ -61,7 +61,7 @@ Slopes slopes(Scenery &s, NodeId field, const Zone &zone) {
         if (!holds(zone, p)) continue;
         if (std::ranges::any_of(zone.less, [&](const Zone &hole) { return holds(hole, p); }))
             continue;
-        at.run(Cell{{Interval(p[0]), Interval(p[1]), Interval(p[2])}});
+        at.run(proof::Cell{{Interval(p[0]), Interval(p[1]), Interval(p[2])}});
         if (at.norm() < ir::rounding::infinity) out.seen = std::max(out.seen, at.norm());
     }
     return out;

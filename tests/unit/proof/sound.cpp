@@ -248,7 +248,7 @@ TEST_CASE("of hashes by sines single precision makes others, so their range alon
         proof::Flattening context{s.g, work};
         const proof::Tape tape = proof::flatten(context, field);
         proof::Machine machine(tape, ranges);
-        machine.run(Cell{{Interval(at), Interval(0.0), Interval(0.0)}});
+        machine.run(proof::Cell{{Interval(at), Interval(0.0), Interval(0.0)}});
         return machine.value(0);
     };
     const NodeId n = s.call(Op::Floor, s.x);
