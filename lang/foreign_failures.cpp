@@ -162,12 +162,14 @@ bool Builder::foreign_binding(Index at) {
         return true;
     }
     if (found == Tok::Name && text(before) == "mut") {
+        lost_.push_back(at);
         foreign(span(at - 2, before), "a name that changes is bound with `var`")
             .help("write `var`", {{span(at - 2, before), "var"}});
         return true;
     }
     if (found == Tok::Name && kind(before) == Tok::Name && kind(at + 1) == Tok::Assign) {
         const std::string typed = std::string(text(at)) + ": " + std::string(text(before));
+        lost_.push_back(at);
         foreign(span(before, at), "a type stands behind its name")
             .help("write " + in_code(typed), {{span(before, at), typed}});
         return true;

@@ -202,6 +202,7 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
         return;
     }
     const Binding binding = ev.frames[found->frame].bindings[found->slot];
+    if (!binding.is_var && is_poison(binding.value)) return; // its declaration is in error
     if (!binding.is_var) {
         const Span declared = binding.declared;
         const bool by_let =

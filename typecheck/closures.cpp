@@ -83,12 +83,14 @@ static Value result_of(Interpreter &ev, const Outcome &out, Span place) {
 static Value finish(Interpreter &ev, const Closure &c, Value v, const lang::Function &f,
                     std::string_view name) {
     Span place = f.span;
-    if (v.kind == ValueKind::Unit && !c.library && report_unfinished(ev, c, f, name))
-        return poison();
-    const bool unread = std::ranges::any_of(c.ast->blocks[f.body].stmts, [](const auto &stmt) {
-        return std::holds_alternative<lang::Bad>(stmt.kind);
+    const bool unread = std::ranges::any_of(c.ast->blocks[f.body].stmts, [&](const auto &stmt) {
+        const auto *let = std::get_if<lang::Let>(&stmt.kind); // a name that stands for what was bad
+        return std::holds_alternative<lang::Bad>(stmt.kind) ||
+               (let && std::holds_alternative<lang::Poison>(c.ast->exprs[let->value].kind));
     });
     if (v.kind == ValueKind::Unit && unread) return poison(); // it may be what could not be read
+    if (v.kind == ValueKind::Unit && !c.library && report_unfinished(ev, c, f, name))
+        return poison();
     if (v.kind == ValueKind::Unit && f.result) {
         report(ev, Code::MissingValue, f.head.source ? f.head : place,
                fmt::format("`{}` promises a `{}` and ends without a value", name,

@@ -5,6 +5,7 @@
 #include "typecheck/interpreter.h"
 
 #include "ir/lower/lower.h"
+#include "ir/passes/loop_parts.h"
 #include "ir/passes/operations.h"
 #include "ir/passes/walk.h"
 
@@ -257,11 +258,7 @@ std::optional<Exit> try_loop(Interpreter &ev, const LoopInput &input,
         ir::LoopId id = g.add_loop(std::move(loop));
         ir::NodeId node = g.make(Op::Loop, g[vars[0]].type, initial, id.index);
         if (takes_too_long(ev, node, place)) return Exit{};
-        auto result = [&](std::size_t k) {
-            return k == 0 ? node
-                          : g.make(Op::LoopResult, g[vars[k]].type, {node},
-                                   static_cast<std::uint32_t>(k));
-        };
+        auto result = [&](std::size_t k) { return ir::loop_result(g, node, k); };
         for (std::size_t k = 0; k < carried.size(); ++k)
             assign(ev, carried[k].frame, carried[k].slot,
                    from_node(ev, result(k), carried[k].variable.color));
