@@ -90,17 +90,18 @@ FieldBound Prover::bound_once(NodeId field, const Place &here) {
     return out;
 }
 
-NodeId Prover::by_params(ShapeId id, NodeId field, double whole) {
+Prover::Steepness Prover::by_params(ShapeId id, NodeId field, double whole) {
     const Place &here = place(id);
-    NodeId formula;
+    ParamBound found;
     if (here.reported && !work.spent()) {
         Budget budget;
         budget.instructions = options.field_instructions;
-        formula = bound_by_params(flattening, ranges, field, {to_cell(here.box), here.zone}, budget,
-                                  whole);
+        found = bound_by_params(flattening, ranges, field, {to_cell(here.box), here.zone}, budget,
+                                whole);
     }
-    const NodeId number = graph.number(whole);
-    return formula ? graph.make(Op::Min, {formula, number}) : number;
+    const double most = std::min(whole, found.most);
+    const NodeId number = graph.number(most);
+    return {found.formula ? graph.make(Op::Min, {found.formula, number}) : number, most};
 }
 
 FieldBound Prover::bound(ShapeId id, NodeId field, const std::string &what, bool report_it) {
@@ -372,10 +373,12 @@ Derived Prover::know_leaf(ShapeId id) {
         return k;
     }
     const double sup = b.lipschitz * options.rules[Rule::Field];
-    if (options.rules[Rule::Field] == 1)
-        set_lipschitz(k, by_params(id, shape.args[0], sup), sup);
-    else
+    if (options.rules[Rule::Field] == 1) {
+        const Steepness found = by_params(id, shape.args[0], sup);
+        set_lipschitz(k, found.formula, found.sup);
+    } else {
         set_lipschitz(k, sup);
+    }
     k.leaf = shape.args[0];
     if (b.lipschitz == 0) set_lipschitz(k, 1); // a constant
     return k;

@@ -86,7 +86,7 @@ class ParamBounds {
         : context_(context), graph_(context.graph), ranges_(ranges), field_(field), domain_(domain),
           budget_(budget) {}
 
-    NodeId find(double whole) {
+    ParamBound find(double whole) {
         const ir::Scene &scene = *ranges_.scene;
         auto read = params_of(graph_, field_);
         std::erase_if(read, [&](const auto &entry) {
@@ -100,14 +100,16 @@ class ParamBounds {
         for (const auto &[index, nodes] : read)
             present.params[index][0] = Interval(scene.params[index].value[0]);
         if (!pays(whole, bound(present))) return {};
-        NodeId least;
+        ParamBound least;
         std::vector<std::uint32_t> order;
         for (const auto &entry : read) order.push_back(entry.first);
         std::ranges::sort(order);
         for (const std::uint32_t index : order) {
             if (!pays(whole, at(index, Interval(scene.params[index].value[0])))) continue;
+            most_ = 0;
             const NodeId one = of_param(index, read[index].front());
-            least = least ? graph_.make(Op::Min, {least, one}) : one;
+            least.formula = least.formula ? graph_.make(Op::Min, {least.formula, one}) : one;
+            least.most = std::min(least.most, most_);
         }
         return least;
     }
@@ -122,7 +124,9 @@ class ParamBounds {
     double at(std::uint32_t index, Interval values) {
         Ranges ranges = ranges_;
         ranges.params[index][0] = values;
-        return bound(ranges);
+        const double found = bound(ranges);
+        most_ = std::max(most_, found);
+        return found;
     }
 
     NodeId of_param(std::uint32_t index, NodeId param) {
@@ -161,12 +165,23 @@ class ParamBounds {
         most = most ? graph_.make(Op::Max, {most, line}) : line;
     }
 
+    // Pieces of one ratio, where there is one: what scales by a param has it for a slope.
+    static std::vector<double> ends_of_pieces(Interval range) {
+        std::vector<double> out{range.lo};
+        for (int i = 1; i < pieces; ++i) {
+            const double way = double(i) / pieces;
+            out.push_back(range.lo > 0 ? range.lo * std::pow(range.hi / range.lo, way)
+                                       : range.lo + way * (range.hi - range.lo));
+        }
+        out.push_back(range.hi);
+        return out;
+    }
     NodeId by_pieces(std::uint32_t index, NodeId value, Interval range) {
-        const double width = (range.hi - range.lo) / pieces;
+        const std::vector<double> ends = ends_of_pieces(range);
         NodeId out;
-        for (int i = pieces - 1; i >= 0; --i) {
+        for (std::size_t i = pieces; i-- > 0;) {
             // A little wider than its place, for values that are rounded.
-            const double lo = range.lo + i * width, hi = lo + width,
+            const double lo = ends[i], hi = ends[i + 1],
                          rim = 1e-6 * std::max(std::fabs(lo), std::fabs(hi));
             const NodeId here = graph_.number(
                 at(index, Interval(std::max(lo - rim, range.lo), std::min(hi + rim, range.hi))));
@@ -183,12 +198,13 @@ class ParamBounds {
     NodeId field_;
     Domain domain_;
     Budget budget_;
+    double most_ = 0; // of the bounds that the formula in hand is made of
 };
 
 } // namespace
 
-NodeId bound_by_params(Flattening &context, const Ranges &ranges, NodeId field,
-                       const Domain &domain, const Budget &budget, double whole) {
+ParamBound bound_by_params(Flattening &context, const Ranges &ranges, NodeId field,
+                           const Domain &domain, const Budget &budget, double whole) {
     if (!context.graph.reads(field).params || !ranges.scene) return {};
     return ParamBounds(context, ranges, field, domain, budget).find(whole);
 }

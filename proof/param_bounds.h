@@ -7,10 +7,15 @@
 namespace fathom::proof {
 
 // A node that reads params alone and is, for all their values, at least the field's Lipschitz
-// constant over `domain`; or none, where `whole`, the bound for all values together, is little more
-// than the bound for the present ones. Params without a range stay as they are; at most a few are
-// told apart, each with the others over all of their ranges (lipschitz.md, 2.11).
-ir::NodeId bound_by_params(Flattening &context, const Ranges &ranges, ir::NodeId field,
+// constant over `domain`, and the most that it is; no node where `whole`, the bound for all values
+// together, is little more than the bound for the present ones. Params without a range stay as they
+// are; at most a few are told apart, each with the others over all of their ranges (lipschitz.md,
+// 2.11).
+struct ParamBound {
+    ir::NodeId formula;
+    double most = ir::rounding::infinity;
+};
+ParamBound bound_by_params(Flattening &context, const Ranges &ranges, ir::NodeId field,
                            const Domain &domain, const Budget &budget, double whole);
 
 } // namespace fathom::proof

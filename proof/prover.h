@@ -158,7 +158,7 @@ struct Prover {
     FieldBound bound_written(ir::NodeId field, const Domain &domain, const Budget &budget);
     FieldBound bound_by_values(ir::NodeId field, const Domain &domain, const Budget &budget);
     // The bound that was found as a number, or, where that is worth it, as a formula of params.
-    ir::NodeId by_params(ir::ShapeId id, ir::NodeId field, double whole);
+    Steepness by_params(ir::ShapeId id, ir::NodeId field, double whole);
     std::map<std::tuple<ir::NodeId, std::array<double, 3>, std::array<double, 3>>, FieldBound>
         bounds; // by field and box
 

@@ -289,17 +289,15 @@ Derived Prover::know_displaced(ShapeId id) {
     slope *= options.rules[Rule::Displace];
     if (shape.kind == ShapeKind::Displace && varies && shape.args.size() <= 3)
         k.fact.partial = partial_sums(id, slope);
-    double sup = up(k.fact.lipschitz_sup + slope);
     if (slope == 0) {
-        set_lipschitz(k, k.fact.lipschitz, sup);
+        set_lipschitz(k, k.fact.lipschitz, k.fact.lipschitz_sup);
         return k;
     }
     const bool by_field = varies && shape.args.size() <= 3 && shape.kind == ShapeKind::Displace &&
                           options.rules[Rule::Displace] == 1;
-    set_lipschitz(k,
-                  graph.add(k.fact.lipschitz,
-                            by_field ? by_params(id, shape.args[0], slope) : graph.number(slope)),
-                  sup);
+    const Steepness own =
+        by_field ? by_params(id, shape.args[0], slope) : Steepness{graph.number(slope), slope};
+    set_lipschitz(k, graph.add(k.fact.lipschitz, own.formula), up(k.fact.lipschitz_sup + own.sup));
     return k;
 }
 

@@ -122,7 +122,7 @@ std::optional<Smooth> by_least(Graph &graph, NodeId extremum, const Product &bul
         if (cubic) gather(graph, k, by);
         cancel(graph, by);
         if (by.factors.empty() && std::fabs(by.number - 1) < 1e-12)
-            return Smooth{x, y, k, k, false, !graph.as_number(k), true};
+            return Smooth{x, y, k, k, false, !graph.as_number(k), true, cubic};
         if (cubic) continue;
         // c may be 1/(4 max(k, tiny)): no more than 1/(4 k), and the same for all points
         for (NodeId f : rest.factors) {

@@ -20,6 +20,7 @@ struct Smooth {
     bool greater = false; // where k > 0
     bool divides = false; // by k: not where k may be 0
     bool clipped = false; // below 0 k counts as 0; else it makes the other of least and greatest
+    bool cubic = false;   // h^3/(6 k^2)
 };
 std::optional<Smooth> smooth_extremum(ir::Graph &graph, ir::NodeId sum);
 

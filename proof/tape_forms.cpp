@@ -4,11 +4,13 @@
 
 #include "proof/around.h"
 #include "proof/continuity.h"
+#include "proof/field.h"
 #include "proof/forms.h"
 #include "proof/guarded.h"
 #include "proof/interpolation.h"
 #include "proof/linear_maps.h"
 #include "proof/means.h"
+#include "proof/rescaled.h"
 #include "proof/segments.h"
 #include "proof/smooth.h"
 
@@ -185,12 +187,44 @@ void Flattener::find_mean(Scope &scope, NodeId id, Instruction &out) {
                     mean->beyond};
 }
 
+// s f(p/s) as f(p) would be, of a larger solid.
+std::optional<NodeId> Flattener::without_factors(Scope &scope, NodeId id) {
+    if (!context.ranges) return {};
+    NodeId left, value;
+    const bool divides = graph[id].op == Op::Div;
+    for (int i = 0; i < 2 && !value; ++i) { // one stands still, and one does not
+        const NodeId still = graph.arg(id, i), other = graph.arg(id, 1 - i);
+        if (divides && i == 0) continue;
+        if (!varies[slot(scope, still)] && varies[slot(scope, other)]) left = still, value = other;
+    }
+    if (!value) return {};
+    bool any = false;
+    for (Factor factor : factors_of(graph, left)) {
+        if (divides) factor.divides = !factor.divides;
+        const Interval range = range_of(context, *context.ranges, factor.number, Cell{})[0];
+        if (!(range.lo > 0) || !range.finite()) continue;
+        const auto moved = rescaled(graph, factor, value),
+                   rest = rescaled(graph, {factor.number, factor.divides == divides}, left);
+        if (!moved || !rest) continue;
+        for (const auto &[old, made] : moved->made) {
+            if (cancelling.contains(old)) cancelling.insert(made);
+            if (const auto joined = context.joined.find(old);
+                joined != context.joined.end() && joined->second)
+                context.joined[made] = true;
+        }
+        left = rest->value, value = moved->value, any = true;
+    }
+    if (!any) return {};
+    return divides ? graph.div(value, left) : graph.mul(value, left);
+}
+
 Slot Flattener::product(Scope &scope, NodeId id, Instruction out) {
     if (const auto smooth = hermite(graph, id)) return slot(scope, *smooth);
     if (graph.arg(id, 0) == graph.arg(id, 1))
         return emit(scope, out, Form::Square, {graph.arg(id, 0)});
     if (const auto parts = odd_power(graph, id))
         return emit(scope, out, Form::OddPower, {parts->x, parts->exponent});
+    if (const auto larger = without_factors(scope, id)) return slot(scope, *larger);
     for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
     if (out.type != ir::Type::Float && !ir::is_vector(out.type)) return emit(scope, std::move(out));
     if (const auto around = around_axis(context, id); around && cancelling.contains(around->angle))
@@ -206,6 +240,7 @@ Slot Flattener::quotient(Scope &scope, NodeId id, Instruction out) {
         out.op = Op::Normalize;
         return emit(scope, out, Form::Plain, {a});
     }
+    if (const auto larger = without_factors(scope, id)) return slot(scope, *larger);
     return emit_plain(scope, id, std::move(out));
 }
 

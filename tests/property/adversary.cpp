@@ -122,10 +122,10 @@ class Adversary : public Chance {
             &Adversary::powers,      &Adversary::ratios, &Adversary::conditions,
             &Adversary::repetitions, &Adversary::loops,  &Adversary::nested,
             &Adversary::angles,      &Adversary::uses,   &Adversary::noise,
-            &Adversary::turns,       &Adversary::cells};
+            &Adversary::turns,       &Adversary::cells,  &Adversary::sized};
         return (this->*makers[kind % makers.size()])();
     }
-    static constexpr std::size_t kinds = 17;
+    static constexpr std::size_t kinds = 18;
 
   private:
     // A linear form whose borders others share.
@@ -374,6 +374,37 @@ class Adversary : public Chance {
                of({"ball(2)", "ball(1.5)", "tube(Y, 1)", "ball(1, at: [0.2, 0, 0])",
                    "aabb([-1.5, -1, -2], [1.5, 2, 1.5])"}) +
                ")\n";
+    }
+
+    // What a param or the time makes larger and smaller, by one number twice, or nearly.
+    std::string sized() {
+        const std::string size =
+            of({"w", "w", "1 + 0.4 * sin(time)", "0.5 + fract(time)", "w * (1 + 0.3 * sin(time))",
+                "1 / w", "min(1, w)", "0.4 + 4 * fract(time) * (1 - fract(time))", "w - 0.35"});
+        const std::string q =
+            of({"p / s", "p / s", "p * (1 / s)", "p / (2 * s)", "vec3(p.x, p.y / s, p.z)",
+                "p / s + 0.2", "abs(p / s)", "vec3(c * p.x - n * p.z, p.y, n * p.x + c * p.z) / s",
+                "s * p", "(p - w) / s", "p / (s * s)", "p / s - round(p / s)", "p.zxy / vec3(s)",
+                "(p / s + 1) % 2 - 1", "p / s - clamp(round(p / s), -1, 2)"});
+        const std::string d = of(
+            {"length(q) - 0.5", "length(max(abs(q) - 0.4, 0))", "sqrt(dot(q, q)) - 0.5",
+             "max(abs(q.x), abs(q.y)) - 0.3", "smin(length(q) - 0.4, q.y, 0.2)",
+             "mmin(length(q) - 0.4, q.y, 0.2)", "smin(length(q) - 0.4, q.y, 0.2 * s)",
+             "pow(pow(abs(q.x), 4) + pow(abs(q.y), 4) + pow(abs(q.z), 4), 1 / 4) - 0.5",
+             "if q.x > q.y { q.x } else { q.y }", "length(q - vec3(0, clamp(q.y, -0.5, 0.5), 0))",
+             "length(q) + 0.1 * sin(5 * q.x)", "length(q.xz) - 0.1 * noise(3 * q)", "q.x * q.y",
+             "length(vec2(length(q.xz) - 0.6, q.y)) - 0.2", "mix(length(q), q.x, 0.3)",
+             "dot(q, vec3(0.6, 0, 0.8)) - 0.2", "log(1 + dot(q, q))", "length(q) - p.y"});
+        const std::string made =
+            of({"s * d", "s * d", "d * s - 0.1", "d / s", "2 * s * d", "d * 0.5 * s", "s * (s * d)",
+                "d / (1 / s)", "s * (d - 0.2)", "w * d", "s * abs(d)", "-s * d", "s * d + d / s"});
+        return "param w = 0.9 in " + std::string(of({"0.4..1.6", "0.5..2", "-1..1", "0.9..1"})) +
+               "\nfn smin(a, b, k) { let h = max(k - abs(a - b), 0)\n min(a, b) - h * h / (4 * k) "
+               "}" +
+               "\nfn mmin(a, b, k) { let h = clamp(0.5 + 0.5 * (b - a) / k, 0, 1)\n" +
+               " mix(b, a, h) - k * h * (1 - h) }\nimplicit(p => {\n let s = " + size +
+               "\n let c = cos(w)\n let n = sin(w)\n let q = " + q + "\n let d = " + d +
+               "\n 0.4 * (" + made + ")\n}, within: ball(2))\n";
     }
 
     // Copies that differ from cell to cell, hidden at the cells' borders, or nearly.

@@ -1,0 +1,242 @@
+// Let s > 0. Each rule is an identity: s (a + b) = s a + s b, s max(a, b) = max(s a, s b),
+// s |v| = |s v|, s^n a^n = (s a)^n, s (x/s) = x, … An expression in which s meets no inverse stays a
+// product with s.
+#include "proof/rescaled.h"
+
+#include "proof/forms.h"
+#include "proof/smooth.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <span>
+
+namespace fathom::proof {
+namespace {
+
+using ir::Graph;
+using ir::Op;
+using ir::OpSet;
+
+class Inward {
+  public:
+    Inward(Graph &graph, Factor factor) : graph_(graph), factor_(factor) {}
+
+    struct Moved {
+        NodeId value;
+        bool met = false;
+    };
+    // s^power times the expression, power >= 1.
+    Moved times(NodeId id, int power) {
+        const auto key = std::pair(id, power);
+        if (const auto known = known_.find(key); known != known_.end()) return known->second;
+        if (known_.size() > most_nodes || depth_ > max_depth) return {beside(id, power)};
+        ++depth_;
+        const NodeId inside = made(id, power);
+        --depth_;
+        const Moved out = inside ? Moved{inside, true} : Moved{beside(id, power), false};
+        if (inside) pairs.emplace_back(id, inside);
+        return known_[key] = out;
+    }
+    std::vector<std::pair<NodeId, NodeId>> pairs;
+
+  private:
+    static constexpr std::size_t most_nodes = 2000;
+    static constexpr int max_depth = 200, max_power = 16;
+
+    NodeId beside(NodeId id, int power) {
+        for (int i = 0; i < power; ++i)
+            id = factor_.divides ? graph_.div(id, factor_.number) : graph_.mul(id, factor_.number);
+        return id;
+    }
+
+    bool is_factor(NodeId id) const {
+        return id == factor_.number ||
+               (graph_[id].op == Op::Splat && graph_.arg(id, 0) == factor_.number);
+    }
+    bool is_inverse(NodeId id) const {
+        if (graph_[id].op == Op::Splat) return is_inverse(graph_.arg(id, 0));
+        return graph_[id].op == Op::Div && is_factor(graph_.arg(id, 1)) &&
+               graph_.as_number(graph_.arg(id, 0)) == 1.0;
+    }
+
+    // The node with these arguments scaled; none where the factor met nothing in any.
+    NodeId with_args(NodeId id, int power, std::span<const std::size_t> which) {
+        const ir::Node node = graph_[id];
+        std::vector<NodeId> args(graph_.args(id).begin(), graph_.args(id).end());
+        bool met = false;
+        for (std::size_t i : which) {
+            const Moved one = times(args[i], power);
+            args[i] = one.value, met |= one.met;
+        }
+        return met ? graph_.make(node.op, node.type, args, node.payload) : NodeId();
+    }
+    NodeId with_args(NodeId id, int power, std::initializer_list<std::size_t> which) {
+        return with_args(id, power, std::span(which.begin(), which.size()));
+    }
+    NodeId with_all_args(NodeId id, int power) {
+        std::vector<std::size_t> all(graph_[id].count);
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        return with_args(id, power, all);
+    }
+
+    // Of x/s and s, x; of s x and 1/s, x; of 1/s and s, or the other way round, 1.
+    NodeId without_inverse(NodeId id) const {
+        const Op op = graph_[id].op;
+        if (factor_.divides ? is_factor(id) : is_inverse(id))
+            return graph_.splat(graph_.number(1), graph_.type(id));
+        if (op != Op::Mul && op != Op::Div) return {};
+        const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
+        if (op == Op::Div) return !factor_.divides && is_factor(b) ? a : NodeId();
+        const auto meets = [&](NodeId x) { return factor_.divides ? is_factor(x) : is_inverse(x); };
+        return meets(a) ? b : meets(b) ? a : NodeId();
+    }
+
+    // s^n a b as s^i a s^(n - i) b.
+    NodeId product(NodeId id, int power) {
+        const ir::Node node = graph_[id];
+        const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
+        Moved left = times(a, std::max(power / 2, 1)), right{b};
+        if (power > 1 || !left.met) right = times(b, power > 1 ? power - power / 2 : 1);
+        if (power == 1 && !left.met) left.value = a;
+        if (!left.met && !right.met) return {};
+        return graph_.make(node.op, node.type, std::array{left.value, right.value}, node.payload);
+    }
+
+    // s a/b as (s a)/b, or as a/(b/s).
+    NodeId quotient(NodeId id, int power) {
+        if (const NodeId above = with_args(id, power, {0}); above || power > 1) return above;
+        Inward inverse(graph_, {factor_.number, !factor_.divides});
+        inverse.depth_ = depth_;
+        const Moved below = inverse.times(graph_.arg(id, 1), 1);
+        return below.met ? graph_.div(graph_.arg(id, 0), below.value) : NodeId();
+    }
+
+    // b^c: c a constant, and power/c whole.
+    NodeId power_of(NodeId id, double exponent, int power) {
+        const double inner = power / exponent;
+        if (!(inner >= 1 && inner <= max_power) || std::floor(inner) != inner) return {};
+        return with_args(id, int(inner), {0});
+    }
+
+    // The smooth extremum of s x and s y within s k, written as it was (smooth.h).
+    NodeId smooth(const Smooth &of) {
+        if (of.divisor != of.k) return {};
+        const Moved x = times(of.x, 1), y = times(of.y, 1);
+        if (!x.met && !y.met) return {};
+        const NodeId k = times(of.k, 1).value, zero = graph_.number(0), one = graph_.number(1);
+        if (!of.clipped) {
+            const NodeId width = of.greater ? graph_.neg(k) : k;
+            const NodeId way =
+                graph_.div(graph_.mul(graph_.number(0.5), graph_.sub(y.value, x.value)), width);
+            const NodeId h =
+                graph_.make(Op::Clamp, {graph_.add(graph_.number(0.5), way), zero, one});
+            const NodeId bulge = graph_.mul({graph_.mul(width, h), graph_.sub(one, h)});
+            return graph_.sub(graph_.make(Op::Mix, {y.value, x.value, h}), bulge);
+        }
+        const NodeId way = graph_.make(Op::Abs, {graph_.sub(x.value, y.value)});
+        const NodeId h = graph_.make(Op::Max, {graph_.sub(k, way), zero}),
+                     square = graph_.mul(h, h);
+        const NodeId bulge = of.cubic ? graph_.div({graph_.mul(square, h),
+                                                    graph_.mul(graph_.number(6), graph_.mul(k, k))})
+                                      : graph_.div({square, graph_.mul(graph_.number(4), k)});
+        const NodeId most = graph_.make(of.greater ? Op::Max : Op::Min, {x.value, y.value});
+        return of.greater ? graph_.add(most, bulge) : graph_.sub(most, bulge);
+    }
+
+    // The wave of s x with periods s m, and its step for the step of the other.
+    NodeId waving(NodeId id, NodeId of, NodeId period, const HeldWaveParts *held) {
+        const Moved x = times(of, 1);
+        if (!x.met) return {};
+        const NodeId m = times(period, 1).value;
+        const NodeId round = graph_.make(Op::Round, {graph_.div(x.value, m)});
+        const NodeId turns = held ? graph_.make(Op::Clamp, {round, held->lo, held->hi}) : round;
+        if (const auto step = step_in(id, 0)) pairs.emplace_back(*step, round);
+        return graph_.sub(x.value, graph_.mul(m, turns));
+    }
+    std::optional<NodeId> step_in(NodeId id, int depth) const {
+        constexpr OpSet steps{Op::Round, Op::Mod, Op::Fract},
+            through{Op::Sub, Op::Add, Op::Mul, Op::Clamp};
+        const ir::Node node = graph_[id];
+        if (steps[node.op]) return id;
+        if (depth > 3 || !through[node.op]) return {};
+        for (NodeId arg : graph_.args(id))
+            if (const auto found = step_in(arg, depth + 1)) return found;
+        return {};
+    }
+
+    // Of sums whose terms only make sense together; the node itself where it is none.
+    NodeId known_form(NodeId id, int power) {
+        if (const auto of = wave(graph_, id))
+            return power == 1 ? waving(id, of->x, of->m, nullptr) : NodeId();
+        if (const auto of = held_wave(graph_, id))
+            return power == 1 ? waving(id, of->x, of->m, &*of) : NodeId();
+        if (graph_.type(id) == ir::Type::Float)
+            if (const auto of = smooth_extremum(graph_, id))
+                return power == 1 ? smooth(*of) : NodeId();
+        return id;
+    }
+
+    NodeId made(NodeId id, int power) {
+        constexpr OpSet by_all{Op::Add,   Op::Sub,     Op::Neg,   Op::Abs,
+                               Op::Min,   Op::Max,     Op::Clamp, Op::Make,
+                               Op::Splat, Op::Swizzle, Op::Union, Op::Intersection},
+            sums{Op::Add, Op::Sub}, products{Op::Mul, Op::Dot};
+        const ir::Node node = graph_[id];
+        if (power == 1)
+            if (const NodeId x = without_inverse(id)) return x;
+        if (sums[node.op])
+            if (const NodeId form = known_form(id, power); form != id) return form;
+        if (by_all[node.op]) return with_all_args(id, power);
+        if (products[node.op]) return product(id, power);
+        if (node.op == Op::Length) return power == 1 ? with_all_args(id, 1) : NodeId();
+        if (node.op == Op::Mix) return with_args(id, power, {0, 1});
+        if (node.op == Op::Select) return with_args(id, power, {1, 2});
+        if (node.op == Op::Div) return quotient(id, power);
+        if (node.op == Op::Sqrt) return power_of(id, 0.5, power);
+        if (node.op == Op::Pow) {
+            const auto exponent = graph_.as_number(graph_.arg(id, 1));
+            return exponent ? power_of(id, *exponent, power) : NodeId();
+        }
+        if (node.op == Op::MatMul && ir::is_vector(node.type))
+            return with_args(id, power, {ir::is_vector(graph_.type(graph_.arg(id, 0))) ? 0u : 1u});
+        return {};
+    }
+
+    Graph &graph_;
+    Factor factor_;
+    std::map<std::pair<NodeId, int>, Moved> known_;
+    int depth_ = 0;
+};
+
+void gather(const Graph &graph, NodeId id, bool divides, std::vector<Factor> &out) {
+    constexpr std::size_t most = 8;
+    const ir::Node node = graph[id];
+    if (out.size() >= most || node.op == Op::Const) return;
+    if (node.op == Op::Splat) return gather(graph, graph.arg(id, 0), divides, out);
+    if (node.op == Op::Mul || node.op == Op::Div) {
+        gather(graph, graph.arg(id, 0), divides, out);
+        gather(graph, graph.arg(id, 1), node.op == Op::Div ? !divides : divides, out);
+    } else if (node.type == ir::Type::Float) {
+        out.push_back({id, divides});
+    }
+}
+
+} // namespace
+
+std::optional<Rescaled> rescaled(Graph &graph, Factor factor, NodeId expression) {
+    Inward inward(graph, factor);
+    const auto out = inward.times(expression, 1);
+    if (!out.met) return {};
+    return Rescaled{out.value, std::move(inward.pairs)};
+}
+
+std::vector<Factor> factors_of(const Graph &graph, NodeId product) {
+    std::vector<Factor> out;
+    gather(graph, product, false, out);
+    return out;
+}
+
+} // namespace fathom::proof

@@ -1,0 +1,32 @@
+// A field that was made larger by a number, `s * f(p/s)` or `f(s*p) / s`: the number and its inverse
+// meet in what the field measures, and neither is left. Decided on expressions.
+#pragma once
+
+#include "ir/graph.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace fathom::proof {
+
+using ir::NodeId;
+
+// A number above 0 that is the same for all points, times an expression or below it.
+struct Factor {
+    NodeId number;
+    bool divides = false;
+};
+
+// The same value as an expression of which each sum, extremum, length, … is made of what the factor
+// has met (docs/lipschitz.md, 2.22). Nothing where it meets no inverse of itself.
+struct Rescaled {
+    NodeId value;
+    std::vector<std::pair<NodeId, NodeId>> made; // each node, and the one that is made of it
+};
+std::optional<Rescaled> rescaled(ir::Graph &graph, Factor factor, NodeId expression);
+
+// What a node is times, or divided by: the factors of a product or quotient, numbers apart.
+std::vector<Factor> factors_of(const ir::Graph &graph, NodeId product);
+
+} // namespace fathom::proof

@@ -1,0 +1,140 @@
+// Fields made larger by a number (proof/rescaled.h): the same value without it, whatever they
+// measure, and the bound of what they are made of.
+#include "proof/rescaled.h"
+#include "build.h"
+#include "ir/passes/walk.h"
+
+#include <catch2/catch.hpp>
+
+#include <functional>
+
+using namespace fathom;
+using namespace fathom::test;
+
+namespace {
+
+struct Sized {
+    Scenery s;
+    Graph &g = s.g;
+    NodeId size = g.param(0, Type::Float), zero = g.number(0), half = g.number(0.5);
+    NodeId smaller = g.div(s.p, size), larger = g.mul(s.p, size);
+
+    double value(NodeId of, double by, std::array<double, 3> at) {
+        const NodeId found =
+            ir::substitute(g, of, {{size, g.number(by)}, {s.p, g.vec3(at[0], at[1], at[2])}});
+        REQUIRE(g.is_constant(found));
+        return g.constant_of(found).value[0];
+    }
+    NodeId box(NodeId q) {
+        const NodeId way = g.sub(s.call(Op::Abs, q), g.vec3(0.4, 0.5, 0.6));
+        const NodeId most =
+            g.make(Op::Max, {g.component(way, 0),
+                             g.make(Op::Max, {g.component(way, 1), g.component(way, 2)})});
+        return g.add(s.length(g.make(Op::Max, {way, g.vec3(0, 0, 0)})),
+                     g.make(Op::Min, {most, zero}));
+    }
+    NodeId least(NodeId a, NodeId b, bool by_mix, bool cubic) {
+        const NodeId k = g.number(0.3);
+        if (by_mix) {
+            const NodeId h = g.make(
+                Op::Clamp, {g.add(half, g.div(g.mul(half, g.sub(b, a)), k)), zero, g.number(1)});
+            return g.sub(g.make(Op::Mix, {b, a, h}), g.mul({g.mul(k, h), g.sub(g.number(1), h)}));
+        }
+        const NodeId h = g.make(Op::Max, {g.sub(k, s.call(Op::Abs, g.sub(a, b))), zero});
+        const NodeId square = g.mul(h, h);
+        return g.sub(g.make(Op::Min, {a, b}), cubic ? g.div(g.mul(square, h), g.number(6 * 0.09))
+                                                    : g.div(square, g.number(4 * 0.3)));
+    }
+};
+
+using Measure = std::function<NodeId(Sized &, NodeId)>;
+const std::vector<std::pair<const char *, Measure>> measures{
+    {"a ball", [](Sized &z, NodeId q) { return z.g.sub(z.s.length(q), z.half); }},
+    {"a ball by its square",
+     [](Sized &z, NodeId q) {
+         return z.g.sub(z.s.call(Op::Sqrt, z.g.make(Op::Dot, {q, q})), z.half);
+     }},
+    {"a box", [](Sized &z, NodeId q) { return z.box(q); }},
+    {"a norm of the eighth power",
+     [](Sized &z, NodeId q) {
+         NodeId sum = z.zero;
+         for (int i = 0; i < 3; ++i)
+             sum = z.g.add(
+                 sum, z.g.make(Op::Pow, {z.s.call(Op::Abs, z.g.component(q, i)), z.g.number(8)}));
+         return z.g.sub(z.g.make(Op::Pow, {sum, z.g.number(0.125)}), z.half);
+     }},
+    {"a smooth minimum by mix",
+     [](Sized &z, NodeId q) { return z.least(z.box(q), z.g.component(q, 1), true, false); }},
+    {"a smooth minimum by a square",
+     [](Sized &z, NodeId q) { return z.least(z.box(q), z.g.component(q, 1), false, false); }},
+    {"a smooth minimum by a cube",
+     [](Sized &z, NodeId q) { return z.least(z.box(q), z.g.component(q, 1), false, true); }},
+    {"a grid",
+     [](Sized &z, NodeId q) {
+         return z.g.sub(z.s.length(z.g.sub(q, z.s.call(Op::Round, q))), z.g.number(0.3));
+     }},
+    {"a grid by %",
+     [](Sized &z, NodeId q) {
+         const NodeId two = z.g.vec3(2, 2, 2), one = z.g.vec3(1, 1, 1);
+         return z.s.length(z.g.sub(z.g.make(Op::Mod, {z.g.add(q, one), two}), one));
+     }},
+    {"a grid of few",
+     [](Sized &z, NodeId q) {
+         const NodeId few =
+             z.g.make(Op::Clamp, {z.s.call(Op::Round, q), z.g.vec3(-1, -1, -1), z.g.vec3(1, 2, 1)});
+         return z.g.sub(z.s.length(z.g.sub(q, few)), z.g.number(0.3));
+     }},
+    {"a choice",
+     [](Sized &z, NodeId q) {
+         const NodeId y = z.g.component(q, 1);
+         return z.g.make(Op::Select, {z.g.make(Op::Less, {y, z.zero}), z.g.neg(y), z.s.length(q)});
+     }},
+    {"a ball beside one that stays",
+     [](Sized &z, NodeId q) {
+         return z.g.make(Op::Min, {z.s.length(q), z.g.sub(z.s.length(z.s.p), z.half)});
+     }},
+    {"a ball in a noise",
+     [](Sized &z, NodeId q) {
+         return z.g.add({z.s.length(q), z.s.sin(z.g.mul(z.g.number(3), z.s.x))});
+     }},
+};
+
+} // namespace
+
+TEST_CASE("a number and its inverse leave an expression of the same value") {
+    for (const auto &[name, measure] : measures) {
+        INFO(name);
+        for (const bool divides : {false, true}) {
+            Sized z;
+            const NodeId inner = measure(z, divides ? z.larger : z.smaller);
+            const auto found = proof::rescaled(z.g, {z.size, divides}, inner);
+            REQUIRE(found);
+            for (const double by : {0.3, 1.0, 1.7})
+                for (const std::array<double, 3> at :
+                     {std::array{0.2, 0.7, -0.3}, std::array{-1.1, 0.1, 0.9},
+                      std::array{0.45, -0.62, 0.33}, std::array{2.3, 1.9, -1.4}}) {
+                    const double inside = z.value(inner, by, at);
+                    CHECK(z.value(found->value, by, at) ==
+                          Approx(divides ? inside / by : inside * by).epsilon(1e-9).margin(1e-9));
+                }
+        }
+    }
+}
+
+TEST_CASE("what no inverse is in stays as it is") {
+    Sized z;
+    CHECK_FALSE(proof::rescaled(z.g, {z.size, false}, z.box(z.s.p)));
+    CHECK_FALSE(proof::rescaled(z.g, {z.size, false}, z.box(z.larger)));
+    CHECK_FALSE(proof::rescaled(z.g, {z.size, true}, z.box(z.smaller)));
+    CHECK_FALSE(proof::rescaled(z.g, {z.size, false}, z.s.sin(z.g.component(z.smaller, 0))));
+}
+
+TEST_CASE("the factors of a product are found, and numbers left aside") {
+    Sized z;
+    const NodeId t = z.g.time();
+    const NodeId product = z.g.div({z.g.mul(z.g.number(2), z.size), z.g.mul(t, z.g.number(3))});
+    const auto factors = proof::factors_of(z.g, product);
+    REQUIRE(factors.size() == 2);
+    CHECK((factors[0].number == z.size && !factors[0].divides));
+    CHECK((factors[1].number == t && factors[1].divides));
+}
