@@ -321,6 +321,7 @@ std::optional<ir::CellBounds> bound_cells(Flattening &context, const Ranges &ran
     const Tape tape = flatten(context, field);
     if (tape.too_large || tape.length() * 64 > aim.instructions) return std::nullopt;
     Machine machine(tape, ranges, aim.bends);
+    machine.narrow_still();
     // Where it is everywhere about as steep, one bound says as much.
     std::vector<double> slopes;
     Dice dice{0xce11};

@@ -251,6 +251,7 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, NodeId field,
         return out;
     }
     Machine machine(tape, ranges);
+    machine.narrow_still();
     Periods periods = periods_of(tape, context.graph);
     Cell whole = domain.box;
     const std::array<bool, 3> shifted = to_one_period(periods, whole);
@@ -363,6 +364,7 @@ double search_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar
     Tape tape = flatten(context, scalar);
     if (tape.too_large) return infinity;
     Machine machine(tape, ranges);
+    machine.narrow_still();
     const std::array<bool, 3> all{true, true, true};
     std::priority_queue<Candidate, std::vector<Candidate>, Worse> queue;
     std::vector<Cell> cells;
@@ -440,6 +442,7 @@ std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, Nod
         return out;
     }
     Machine machine(tape, ranges);
+    machine.narrow_still();
     machine.run(cell);
     for (int i = 0; i < machine.size() && i < 16; ++i)
         out[static_cast<std::size_t>(i)] = machine.value(i);

@@ -78,6 +78,10 @@ class Machine {
     // its points and what no choice takes stays as it is (machine_needed.cpp).
     Steps needed(const Steps &steps) const;
 
+    // From here on what stands still has ranges that tell more of numbers it reads more than once
+    // (machine_still.cpp).
+    void narrow_still();
+
     // From here on runs tell of those points of a cell alone that are so far away.
     void keep_to(const Distances &distances);
 
