@@ -135,6 +135,7 @@ driver::CompileOptions driver_options(const CompileOptions &options) {
     if (options.times) to.times = {(*options.times)[0], (*options.times)[1]};
     to.cells = options.cells;
     to.flat_thickness = options.flat_thickness;
+    to.fields = options.fields;
     if (options.cache.impl()) to.bounds = &options.cache.impl()->bounds;
     to.cancelled = options.cancelled;
     if (options.entered)

@@ -36,20 +36,43 @@ MeshOptions mesh_options(const VolumeOptions &options, double side) {
     return mesh;
 }
 
+Volume field_volume(const ir::Scene &ir, const VolumeOptions &options,
+                    const fathom::mesh::VoxelGrid &grid) {
+    const ir::FunctionId field = ir.fields[*options.field];
+    Volume volume;
+    volume.origin = grid.origin;
+    volume.side = grid.side;
+    volume.counts = grid.counts;
+    volume.components = ir::components(ir.graph.type(ir.graph.function(field).result));
+    fathom::mesh::Progress progress;
+    progress.report = options.progress;
+    volume.values = fathom::mesh::values_of(
+        ir, field, settings_of(mesh_options(options, grid.side)), grid, progress);
+    if (progress.cancelled) return without_volume(refusal_of(fathom::mesh::Failure::Cancelled));
+    return volume;
+}
+
 Volume made_volume(const Scene &scene, const VolumeOptions &options) {
     using fathom::mesh::Failure;
     const ir::Scene &ir = ir_of(scene);
     fathom::mesh::Settings settings = settings_of(mesh_options(options, 1));
     ir::Box box;
-    if (Refusal why = refusal_of(fathom::mesh::box_of(ir, settings, box)))
+    if (options.field && options.bounds) {
+        for (std::size_t i = 0; i < 3; ++i) // whatever solid there is
+            box.lo[i] = options.bounds->lo[i], box.hi[i] = options.bounds->hi[i];
+    } else if (Refusal why = refusal_of(fathom::mesh::box_of(ir, settings, box))) {
         return without_volume(std::move(why));
+    }
     double longest = 0;
     for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, box.hi[i] - box.lo[i]);
     const double side = options.side > 0 ? options.side : longest / options.resolution;
-    const auto around = options.band > 0 ? static_cast<int>(std::ceil(options.band)) + 1 : padding;
+    const auto around = options.field      ? 0
+                        : options.band > 0 ? static_cast<int>(std::ceil(options.band)) + 1
+                                           : padding;
     const std::optional<fathom::mesh::VoxelGrid> grid = fathom::mesh::make_grid(box, side, around);
     if (!grid) return without_volume(refusal_of(Failure::TooFine));
 
+    if (options.field) return field_volume(ir, options, *grid);
     const double meshed = options.certify ? 0.2 : 0.5, certified = options.certify ? 0.7 : meshed;
     settings = settings_of(mesh_options(options, side), meshed);
     const fathom::mesh::Made made = fathom::mesh::make_mesh(ir, settings);
@@ -112,6 +135,10 @@ std::string bytes_of(const std::vector<float> &numbers) {
 Volume make_volume(const Scene &scene, const VolumeOptions &options) noexcept {
     if (Refusal why = refusal_of(scene, mesh_options(options, options.side > 0 ? options.side : 1)))
         return without_volume(std::move(why));
+    if (options.field && *options.field >= ir_of(scene).fields.size())
+        return without_volume(
+            {MeshStatus::BadOptions,
+             "the scene was compiled with fewer fields (CompileOptions::fields)"});
     if (!(options.side >= 0) || options.resolution < 1 || options.resolution > 4000 ||
         !(options.band >= 0 && options.band <= 1000) || (options.band > 0 && options.band < 1))
         return without_volume(
@@ -129,15 +156,17 @@ std::string nrrd_file(const Volume &volume) noexcept {
         [&] {
             if (volume.band > 0) return std::string();
             const std::string side = format_shortest(volume.side);
-            return fmt::format("NRRD0004\ntype: float\ndimension: 3\nsizes: {} {} {}\n"
-                               "space dimension: 3\nspace directions: ({},0,0) (0,{},0) (0,0,{})\n"
-                               "space origin: ({},{},{})\nkinds: domain domain domain\n"
-                               "endian: little\nencoding: raw\n\n",
-                               volume.counts[0], volume.counts[1], volume.counts[2], side, side,
-                               side, format_shortest(volume.origin[0]),
-                               format_shortest(volume.origin[1]),
-                               format_shortest(volume.origin[2])) +
-                   bytes_of(volume.distances);
+            const bool vectors = volume.components > 1;
+            return fmt::format(
+                       "NRRD0004\ntype: float\ndimension: {}\nsizes: {}{} {} {}\n"
+                       "space dimension: 3\nspace directions: {}({},0,0) (0,{},0) (0,0,{})\n"
+                       "space origin: ({},{},{})\nkinds: {}domain domain domain\n"
+                       "endian: little\nencoding: raw\n\n",
+                       vectors ? 4 : 3, vectors ? "3 " : "", volume.counts[0], volume.counts[1],
+                       volume.counts[2], vectors ? "none " : "", side, side, side,
+                       format_shortest(volume.origin[0]), format_shortest(volume.origin[1]),
+                       format_shortest(volume.origin[2]), vectors ? "3-vector " : "") +
+                   bytes_of(volume.components > 0 ? volume.values : volume.distances);
         },
         [](const Diagnostic &) { return std::string(); });
 }
@@ -147,15 +176,17 @@ std::string npy_file(const Volume &volume) noexcept {
         [&] {
             if (volume.band > 0) return std::string();
             std::string header =
-                fmt::format("{{'descr': '<f4', 'fortran_order': True, 'shape': ({}, {}, {}), }}",
-                            volume.counts[0], volume.counts[1], volume.counts[2]);
+                fmt::format("{{'descr': '<f4', 'fortran_order': True, 'shape': ({}{}, {}, {}), }}",
+                            volume.components > 1 ? "3, " : "", volume.counts[0], volume.counts[1],
+                            volume.counts[2]);
             // Magic, version and length are ten bytes; all of it is a multiple of 64.
             header.append(63 - (10 + header.size()) % 64, ' ');
             header += '\n';
             std::string bytes("\x93NUMPY\x01\x00", 8);
             bytes += static_cast<char>(header.size() & 0xff);
             bytes += static_cast<char>(header.size() >> 8);
-            return bytes + header + bytes_of(volume.distances);
+            return bytes + header +
+                   bytes_of(volume.components > 0 ? volume.values : volume.distances);
         },
         [](const Diagnostic &) { return std::string(); });
 }

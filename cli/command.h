@@ -136,6 +136,7 @@ struct SolidArguments {
     double frame_rate = 30;
     std::vector<Sweep> sweeps;
     std::string units; // what a length of 1 is, a word of unit_names(); empty: unsaid
+    std::string field; // a function of the point that a volume holds; empty: distances
 };
 // `fathom mesh`.
 struct MeshCommand {

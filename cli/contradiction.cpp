@@ -217,6 +217,9 @@ std::string of(const VolumeCommand &volume, const Given &given) {
         return "--voxel and --resolution both say how fine a volume is: give one of them";
     if (given("--band") && suffix_of(volume.out) != ".vdb")
         return "--band is of a .vdb: .nrrd and .npy hold all voxels";
+    for (const char *option : {"--band", "--certify", "--part"})
+        if (given("--field") && given(option))
+            return fmt::format("{} is of distances, and --field writes others", option);
     if (volume.json && volume.out == "-")
         return "--json and the volume cannot both go to standard output: name a file by -o";
     return "";

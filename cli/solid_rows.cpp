@@ -99,6 +99,13 @@ std::vector<OptionRow> volume_rows(VolumeCommand &command) {
                  return fmt::format("wants a number from 1 to 1000, not `{}`", word);
              command.band = *number;
              return std::string();
+         }},
+        {"--field", "FUNCTION",
+         "instead of distances what a function of the point gives: its name in the scene, or "
+         "`p => …`",
+         [&](const std::string &word) {
+             command.solid.field = word;
+             return std::string(word.empty() ? "wants a function" : "");
          }}};
     for (OptionRow &row : solid_rows(command.solid))
         if (row.name != "--tolerance") rows.push_back(std::move(row));

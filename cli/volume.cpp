@@ -1,4 +1,4 @@
-// fathom volume: true distances on a lattice, as an OpenVDB, NRRD or NumPy file.
+// fathom volume: true distances, or what a function gives, on a lattice, as an OpenVDB, NRRD or NumPy file.
 #include "cli/interrupt.h"
 #include "cli/solid.h"
 
@@ -6,6 +6,9 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cctype>
 
 namespace fathom::cli {
 namespace {
@@ -18,23 +21,45 @@ v1::VolumeOptions volume_options(const VolumeCommand &command, const SolidFrame 
     options.bounds = solid.bounds;
     options.time = solid.time;
     options.certify = command.certify;
+    if (!command.solid.field.empty()) {
+        options.field = 0;
+        return options;
+    }
     if (suffix_of(command.out) != ".vdb") return options;
     options.band = command.band;
     options.colors = true;
     return options;
 }
 
+// Of a grid: the function's, where it has one.
+std::string name_of(const std::string &field) {
+    const auto in_name = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+    };
+    return !field.empty() && std::ranges::all_of(field, in_name) ? field : "density";
+}
+
 // What is to be written, or why there is nothing.
-std::string bytes_of(const v1::Volume &volume, const std::string &suffix, std::string &why) {
+std::string bytes_of(const v1::Volume &volume, const VolumeCommand &command, std::string &why) {
+    const std::string suffix = suffix_of(command.out);
     if (suffix == ".npy") return v1::npy_file(volume);
     if (suffix != ".vdb") return v1::nrrd_file(volume);
-    v1::VdbFile file = v1::vdb_file(volume);
+    v1::VdbFile file = v1::vdb_file(volume, name_of(command.solid.field));
     why = std::move(file.message);
     return std::move(file.bytes);
 }
 
 std::string json_of(const v1::Volume &volume) {
     nlohmann::ordered_json json;
+    if (volume.components > 0) {
+        const auto size = static_cast<std::size_t>(volume.components);
+        json["voxels"] = volume.values.size() / size;
+        json["counts"] = volume.counts;
+        json["origin"] = volume.origin;
+        json["side"] = volume.side;
+        json["components"] = volume.components;
+        return json.dump() + "\n";
+    }
     json["voxels"] = volume.distances.size();
     json["counts"] = volume.counts;
     json["origin"] = volume.origin;
@@ -62,7 +87,7 @@ Exit make(const VolumeCommand &command, const SolidFrame &frame, Terminal &termi
             "a smaller voxel or a tighter bound tells more",
             frame.out, volume.undecided_cells));
     std::string why;
-    const std::string bytes = bytes_of(volume, suffix_of(command.out), why);
+    const std::string bytes = bytes_of(volume, command, why);
     if (bytes.empty()) {
         terminal.say(fmt::format("fathom: {}: {}", frame.out,
                                  why.empty() ? "there is not enough memory" : why));

@@ -78,6 +78,7 @@ typecheck::Options check_options(const CompileOptions &options, Effort &effort) 
     result.limits = options.limits;
     result.limits.work = effort.evaluations;
     result.flat_thickness = options.flat_thickness;
+    result.fields = options.fields;
     result.stop = &effort.stop;
     result.lipschitz = [&effort](ir::Scene &scene, ir::ShapeId shape) -> std::optional<double> {
         std::optional<ir::ShapeFact> fact = prove_one(scene, shape, effort);

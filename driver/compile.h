@@ -41,7 +41,8 @@ struct CompileOptions {
     // Bounds by cells of what is marched and steep, so many along a side at most (proof/prove.h):
     // for what is drawn. 0: none but those of fields in a region.
     int cells = 0;
-    double flat_thickness = 0; // as typecheck::Options has it
+    double flat_thickness = 0;         // as typecheck::Options has it
+    std::vector<std::string> fields{}; // too
     // The scene's own text where it is being typed and not saved yet; compile_file reads it in place
     // of the file's.
     std::optional<std::string> unsaved{};

@@ -207,6 +207,9 @@ struct Scene {
     std::vector<std::string> kept; // given to `dfmodel.keep`, in order: items of a save file that
                                    // the language has no word for; only save-format reads them
 
+    // (vec3) -> float or vec3: what else was asked for (typecheck::Options::fields).
+    std::vector<FunctionId> fields;
+
     // Filled by ir::lower.
     FunctionId distance; // (vec3) -> float: marched: a step of its length never passes a surface
     FunctionId

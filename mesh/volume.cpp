@@ -126,4 +126,35 @@ std::vector<float> distances_of(const ir::Scene &scene, const Settings &settings
     return distances;
 }
 
+std::vector<float> values_of(const ir::Scene &scene, ir::FunctionId function,
+                             const Settings &settings, const VoxelGrid &grid, Progress &progress) {
+    const cpu::Program program = cpu::compile(scene, function);
+    const cpu::Inputs inputs = cpu::inputs_of(scene, settings.time);
+    const auto size = static_cast<std::size_t>(
+        ir::components(scene.graph.type(scene.graph.function(function).result)));
+    const auto width = static_cast<std::size_t>(grid.counts[0]);
+    const auto rows =
+        static_cast<std::size_t>(grid.counts[1]) * static_cast<std::size_t>(grid.counts[2]);
+    std::vector<float> values(size * width * rows);
+    in_parallel(
+        rows, threads_of(settings), progress, [&] { return cpu::make_scratch(program, inputs); },
+        [&](cpu::Scratch &scratch, std::size_t row) {
+            Points points;
+            for (std::size_t k = 0; k < width; ++k)
+                points.add(grid.point(
+                    {static_cast<std::int32_t>(k),
+                     static_cast<std::int32_t>(row % static_cast<std::size_t>(grid.counts[1])),
+                     static_cast<std::int32_t>(row / static_cast<std::size_t>(grid.counts[1]))}));
+            std::array<std::vector<float>, 3> out;
+            for (std::vector<float> &one : out) one.resize(width);
+            const float *in[] = {points.at[0].data(), points.at[1].data(), points.at[2].data()};
+            float *to[] = {out[0].data(), out[1].data(), out[2].data()};
+            cpu::evaluate(program, scratch, in, to, width);
+            for (std::size_t k = 0; k < width; ++k)
+                for (std::size_t c = 0; c < size; ++c)
+                    values[(row * width + k) * size + c] = out[c][k];
+        });
+    return values;
+}
+
 } // namespace fathom::mesh

@@ -41,4 +41,9 @@ std::vector<Voxel> band_of(const ir::Scene &scene, const Settings &settings, con
 std::vector<float> distances_of(const ir::Scene &scene, const Settings &settings, const Mesh &mesh,
                                 const VoxelGrid &grid, Progress &progress);
 
+// What another function of the scene gives at all points, as many numbers a point as it has
+// components (Scene::fields).
+std::vector<float> values_of(const ir::Scene &scene, ir::FunctionId function,
+                             const Settings &settings, const VoxelGrid &grid, Progress &progress);
+
 } // namespace fathom::mesh

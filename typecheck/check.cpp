@@ -7,6 +7,7 @@
 
 #include "ir/background.h"
 #include "ir/passes/param_reads.h"
+#include "ir/passes/walk.h"
 
 #include <fmt/format.h>
 
@@ -176,6 +177,7 @@ void tell_unused_params(Interpreter &ev, SourceId root) {
     for (const ir::Material &m : scene.shapes.materials)
         for (ir::NodeId id : {m.diffuse, m.specular, m.exponent, m.emission}) reads.node(id);
     for (const ir::Light &light : scene.lights) reads.node(light.position), reads.node(light.color);
+    for (const ir::FunctionId field : scene.fields) reads.node(scene.graph.function(field).result);
     const ir::Lighting &l = scene.lighting;
     for (ir::NodeId id : {l.ambient, l.ambient_occlusion, l.shadow_darkness, l.soft_shadows,
                           l.specular_intensity, l.fill, l.occlusion_reach, scene.camera.at,
@@ -190,7 +192,33 @@ void tell_unused_params(Interpreter &ev, SourceId root) {
     }
 }
 
-void build_scene(Interpreter &ev, const std::vector<Contribution> &contributions, const File &ast) {
+// What was asked for beside the solid, in the names of the scene's file.
+void add_fields(Interpreter &ev, std::uint32_t frame) {
+    ir::Graph &graph = ev.scene.graph;
+    for (const std::string &text : ev.options.fields) {
+        const SourceId source = ev.sources.add("--field", text);
+        const File &ast = parse_file(ev, source, ev.diagnostics);
+        const std::vector<lang::Stmt> &stmts = ast.blocks[ast.root].stmts;
+        const auto *only =
+            stmts.size() == 1 ? std::get_if<lang::ExprStmt>(&stmts[0].kind) : nullptr;
+        const Span whole{source, 0, static_cast<std::uint32_t>(text.size())};
+        const Value given = only ? eval(ev, ast, only->value, frame) : poison();
+        if (is_poison(given)) {
+            if (!ev.diagnostics.has_errors())
+                report(ev, Code::TypeMismatch, whole, "this is no function of the point")
+                    .help("name one of the scene's file, or write one: `p => noise(4 * p)`");
+            continue;
+        }
+        const auto value = apply_any(ev, given, whole, "a volume");
+        if (!value) continue;
+        const ir::NodeId point = graph.fresh_var(ir::Type::Vec3);
+        const ir::NodeId result = ir::substitute(graph, *value, {{graph.point(), point}});
+        ev.scene.fields.push_back(graph.add_function({"field", {}, {point}, result}));
+    }
+}
+
+void build_scene(Interpreter &ev, const std::vector<Contribution> &contributions, const File &ast,
+                 std::uint32_t frame) {
     ir::Scene &scene = ev.scene;
     scene.lighting = default_lighting(ev);
     scene.background = ir::usual_background(scene.graph);
@@ -214,6 +242,7 @@ void build_scene(Interpreter &ev, const std::vector<Contribution> &contributions
             .help("the smallest scene is `sphere(1)`");
     }
     scene.root = unite(ev, std::move(shapes), 3, ast.blocks[ast.root].span);
+    add_fields(ev, frame);
     demand_ranges(ev);
     tell_unused_params(ev, ast.source);
 }
@@ -243,7 +272,7 @@ Checked check(Sources &sources, SourceId root, const std::string &root_identity,
         run_module(ev, module, contributions);
         ev.current_module = module;
         check_names(ev, ast, m.frame);
-        build_scene(ev, contributions, ast);
+        build_scene(ev, contributions, ast, m.frame);
         for (const Override &o : options.overrides) {
             bool known = false;
             for (const ir::Param &p : ev.scene.params) known = known || p.name == o.name;

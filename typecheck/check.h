@@ -89,6 +89,9 @@ struct Options {
     // Where params are declared that stand at their present values, as scene time sees them, and not
     // for all of their ranges: they become structural.
     std::vector<Span> at_values{};
+    // Functions of the point that are wanted beside the solid, each an expression in the names of
+    // the scene's file: Scene::fields.
+    std::vector<std::string> fields{};
     Limits limits;        // what the scene may cost before it is refused
     Stop *stop = nullptr; // where it stops, evaluation ends as at a limit, and nothing is reported
 };

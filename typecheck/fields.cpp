@@ -14,9 +14,10 @@ int parameter_count(Interpreter &ev, const Value &f) {
     return static_cast<int>(c.ast->functions[c.function].parameters.size());
 }
 
-std::optional<ir::NodeId> apply_field(Interpreter &ev, const Value &field,
-                                      const std::vector<ir::NodeId> &inputs, Type result,
-                                      Span place, What what, bool *is_color) {
+// The numbers that a function or a constant gives there; else reported, with what is wanted.
+static std::optional<Value> numbers_at(Interpreter &ev, const Value &field,
+                                       const std::vector<ir::NodeId> &inputs,
+                                       std::string_view wanted, Span place, What what) {
     if (is_poison(field)) return std::nullopt;
     Value value;
     if (is_function(field)) {
@@ -48,12 +49,21 @@ std::optional<ir::NodeId> apply_field(Interpreter &ev, const Value &field,
     }
     if (!is_numeric(value)) {
         report(ev, Code::TypeMismatch, place,
-               fmt::format("{} wants a function that gives a {}, this one gives {}", what,
-                           ir::type_name(result), describe(ev, value)));
+               fmt::format("{} wants a function that gives a {}, this one gives {}", what, wanted,
+                           describe(ev, value)));
         return std::nullopt;
     }
     if (!finite_number(ev, value, place, what)) return std::nullopt;
-    Type type = numeric_type(ev, value);
+    return value;
+}
+
+std::optional<ir::NodeId> apply_field(Interpreter &ev, const Value &field,
+                                      const std::vector<ir::NodeId> &inputs, Type result,
+                                      Span place, What what, bool *is_color) {
+    const auto found = numbers_at(ev, field, inputs, ir::type_name(result), place, what);
+    if (!found) return std::nullopt;
+    const Value &value = *found;
+    const Type type = numeric_type(ev, value);
     if (is_color) *is_color = value.color;
     if (type == result) return to_node(ev, value);
     if (type == Type::Int || type == Type::Float) {
@@ -66,6 +76,19 @@ std::optional<ir::NodeId> apply_field(Interpreter &ev, const Value &field,
         .help(result == Type::Float && ir::is_vector(type)
                   ? "one number of a vector is its length, `length(p) - 1`, or a part, `p.y`"
                   : "let the function's last expression give that");
+    return std::nullopt;
+}
+
+std::optional<ir::NodeId> apply_any(Interpreter &ev, const Value &field, Span place, What what) {
+    constexpr std::string_view wanted = "float or a vec3";
+    const auto value = numbers_at(ev, field, {ev.scene.graph.point()}, wanted, place, what);
+    if (!value) return std::nullopt;
+    const Type type = numeric_type(ev, *value);
+    if (type == Type::Vec3) return to_node(ev, *value);
+    if (type == Type::Float || type == Type::Int) return to_node(ev, to_float(ev, *value));
+    report(ev, Code::TypeMismatch, place,
+           fmt::format("{} wants a function that gives a {}, this one gives {}", what, wanted,
+                       describe(ev, *value)));
     return std::nullopt;
 }
 

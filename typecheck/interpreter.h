@@ -473,6 +473,8 @@ std::uint32_t intern_material(Interpreter &ev,
 std::optional<ir::NodeId> apply_field(Interpreter &ev, const Value &field,
                                       const std::vector<ir::NodeId> &inputs, ir::Type result,
                                       Span place, What what, bool *is_color = nullptr);
+// The same of the point alone, whatever it gives: a float or a vec3.
+std::optional<ir::NodeId> apply_any(Interpreter &ev, const Value &field, Span place, What what);
 
 // -- builtins: one table of all that the language itself cannot say
 const std::vector<Builtin> &builtins();

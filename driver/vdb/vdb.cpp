@@ -141,7 +141,7 @@ FathomWriteVdb vdb_writer(std::string &why) {
     const std::filesystem::path file = companion("libfathom-vdb.so", why);
     if (file.empty()) return nullptr;
     if (void *module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL))
-        if (void *found = dlsym(module, "fathom_write_vdb"))
+        if (void *found = dlsym(module, "fathom_write_volume"))
             return reinterpret_cast<FathomWriteVdb>(found);
     const char *error = dlerror();
     why = fmt::format("{}: {}", file.string(), error ? error : "it is no module of Fathom's");

@@ -162,6 +162,10 @@ struct CompileOptions {
      *  there is, as solids that thick about z = 0: `slice` at z = 0 gives their outlines. Solids are
      *  an error then. */
     double flat_thickness = 0;
+    /** Functions of the point that volumes hold (`VolumeOptions::field`), each an expression in the
+     *  names of the scene's file: `density`, or `p => noise(4 * p)`. They give a float or a vec3; what
+     *  they give is no part of the solid, and nothing is proved of it. */
+    std::vector<std::string> fields;
 };
 
 struct CompileResult;

@@ -32,9 +32,13 @@ struct VolumeOptions {
      *  many voxels, 1 to 1,000. */
     double band = 0;
     std::optional<Box> bounds; /**< finite: the solid is cut off there */
-    double time = 0;           /**< seconds, at which the scene's facts hold (`hold_at`) */
-    unsigned threads = 0;      /**< 0: as many as the machine has cores */
-    bool colors = false;       /**< also `Volume::colors`, of a band, where there are several */
+    /** Instead of distances, what that one of the functions gives with which the scene was compiled
+     *  (`CompileOptions::fields`): `Volume::values`, at all voxels of `bounds` or, without, of the
+     *  solid's box. `band`, `colors` and `certify` say nothing then. */
+    std::optional<std::size_t> field;
+    double time = 0;      /**< seconds, at which the scene's facts hold (`hold_at`) */
+    unsigned threads = 0; /**< 0: as many as the machine has cores */
+    bool colors = false;  /**< also `Volume::colors`, of a band, where there are several */
     /** Prove what `Volume::error` says; without it there is none. Takes most of the time. */
     bool certify = true;
     /** Called now and then by one thread at a time, with the share that is done; false cancels. */
@@ -50,8 +54,11 @@ struct Volume {
     double side = 0;
     std::array<int, 3> counts{};
     double band = 0; /**< as a length; 0: all voxels */
-    /** Of all voxels, x the fastest; of a band, of those in `voxels`. */
+    /** Of all voxels, x the fastest; of a band, of those in `voxels`. None of a field. */
     std::vector<float> distances;
+    /** Of a field: 1, or 3 of a vec3. 0: it is one of distances. */
+    int components = 0;
+    std::vector<float> values; /**< of a field: `components` numbers a voxel, of all voxels */
     std::vector<std::array<int, 3>> voxels;   /**< of a band, each once */
     std::vector<std::array<float, 3>> colors; /**< of each of these: of the surface nearest to it */
     /** Every distance is within this of the true one, and every voxel whose true distance is less than
@@ -65,16 +72,17 @@ struct Volume {
 FATHOM_API Volume make_volume(const Scene &scene, const VolumeOptions &options = {}) noexcept;
 
 /** The bytes of an NRRD file with its place in space, or of a NumPy array indexed by [x, y, z], which
- *  has none. Of a volume of all voxels. Empty of a band, and where there is no memory for it. */
+ *  has none; by [c, x, y, z] of a field of vectors. Of a volume of all voxels. Empty of a band, and
+ *  where there is no memory for it. */
 FATHOM_API std::string nrrd_file(const Volume &volume) noexcept;
 FATHOM_API std::string npy_file(const Volume &volume) noexcept;
 
 /** The bytes of an OpenVDB file: a level set `surface` of a band, with a grid `Cd` where it has colours;
- *  or why there are none: `message`. They are written by OpenVDB, which the module
+ *  of a field a grid `name`, in which voxels whose numbers are all 0 are background; or why there are none: `message`. They are written by OpenVDB, which the module
  *  `libfathom-vdb.so` loads, beside the library or in a folder `fathom` beside it. */
 struct VdbFile {
     std::string bytes, message;
 };
-FATHOM_API VdbFile vdb_file(const Volume &volume) noexcept;
+FATHOM_API VdbFile vdb_file(const Volume &volume, const std::string &name = "density") noexcept;
 
 } // namespace fathom::FATHOM_V1

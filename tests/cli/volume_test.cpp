@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <cstring>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -124,6 +125,71 @@ TEST_CASE("a level set of OpenVDB comes back as the solid that it was made of") 
             0);
     refused("junk.sdf", "memory-limit");
     refused("junk.sdf", "--limit memory=");
+}
+
+// The floats at the end of a file.
+static std::vector<float> floats_at_end(const std::string &bytes, std::size_t count) {
+    std::vector<float> out(count);
+    REQUIRE(bytes.size() > count * sizeof(float));
+    std::memcpy(out.data(), bytes.data() + bytes.size() - count * sizeof(float),
+                count * sizeof(float));
+    return out;
+}
+
+TEST_CASE("a volume holds what another function of the scene gives") {
+    ScratchFolder folder;
+    folder.write("cloud.sdf", "param thick = 2 in 0..4\n"
+                              "fn density(p) = max(0, 1 - length(p)) * thick\n"
+                              "fn tint(p) = vec3(p.x, 0.5, time)\nsphere(1)\n");
+    const std::string about = " --bounds -1,-2,-1,1,2,1 --voxel 1 ";
+    const Result made =
+        shell(folder, "fathom volume cloud.sdf --field density --json -o d.nrrd" + about);
+    INFO(made.err);
+    REQUIRE(made.exit == 0);
+    CHECK_FALSE(contains(made.err, "thick")); // it is read
+    const Json json = Json::parse(made.out);
+    CHECK((json["counts"] == Json{3, 5, 3} && json["components"] == 1 && json["voxels"] == 45));
+    const std::vector<float> density = floats_at_end(folder.read("d.nrrd"), 45);
+    for (std::size_t k = 0; k < density.size(); ++k) CHECK(density[k] == (k == 22 ? 2.0f : 0.0f));
+
+    CHECK(shell(folder, "fathom volume cloud.sdf --field tint --time 3 -o t.npy" + about).exit ==
+          0);
+    const std::string tints = folder.read("t.npy");
+    CHECK(contains(tints, "'shape': (3, 3, 5, 3)"));
+    const std::vector<float> tint = floats_at_end(tints, 135);
+    for (std::size_t k = 0; k < tint.size(); k += 3) {
+        CHECK(tint[k] == float(k / 3 % 3) - 1);
+        CHECK((tint[k + 1] == 0.5f && tint[k + 2] == 3.0f));
+    }
+
+    folder.write("none.sdf", "fn glow(p) = p.y\n"); // no solid, so only where bounds are given
+    const std::string written = "fathom volume none.sdf --field 'p => glow(p) + 1' -o g.nrrd";
+    CHECK(shell(folder, written + about).exit == 0);
+    CHECK(floats_at_end(folder.read("g.nrrd"), 45)[0] == -1.0f);
+    CHECK(shell(folder, written).exit == 1);
+    const auto fails = [&](const std::string &arguments, int exit, const std::string &words) {
+        const Result wrong = shell(folder, "fathom volume cloud.sdf -o w.nrrd " + arguments);
+        INFO(wrong.err);
+        CHECK(wrong.exit == exit);
+        CHECK(contains(wrong.err, words));
+        CHECK_FALSE(fs::exists(folder / "w.nrrd"));
+    };
+    fails("--field densty", 1, "did you mean `density`?");
+    fails("--field 'sphere(1)'", 1, "gives a float or a vec3");
+    fails("--field 'p => vec2(p.x, 1)'", 1, "gives a float or a vec3");
+    fails("--field 'let a = 1'", 1, "no function of the point");
+    fails("--field '('", 1, "--field:1:1");
+    fails("--field density --certify off", 2, "--certify is of distances");
+    if (!FATHOM_WITH_VDB) return;
+    CHECK(shell(folder, "fathom volume cloud.sdf --field density --resolution 8 -o d.vdb").exit ==
+          0);
+    folder.write("back.sdf",
+                 "distance_grid(\"d.vdb\", grid: \"density\", isovalue: 1, above: true)\n");
+    const Result at = shell(folder, "fathom eval back.sdf 0 0 0  0.9 0 0");
+    REQUIRE(at.exit == 0);
+    const std::vector<double> found = numbers_in(at.out);
+    REQUIRE(found.size() == 8);
+    CHECK((found[0] < 0 && found[4] > 0));
 }
 
 TEST_CASE("what has no volume says why, and writes nothing") {

@@ -16,9 +16,17 @@ struct FathomVdbGrid {
     const float *colors; // three a voxel, or null
 };
 
+// Of numbers that are no distances: `components` a voxel, 1 or 3, at the same places; 0 is background.
+struct FathomVdbNumbers {
+    const char *name;
+    int components;
+    const float *values;
+};
+
 // The bytes of a file go to `take`, in pieces. Gives 0, or 1 with words in `why`, which has `room`
 // bytes.
-using FathomWriteVdb = int (*)(const FathomVdbGrid *grid,
+// Without `numbers` the file is one of `distances`, else one of these in their place.
+using FathomWriteVdb = int (*)(const FathomVdbGrid *grid, const FathomVdbNumbers *numbers,
                                void (*take)(void *to, const char *bytes, std::size_t count),
                                void *to, char *why, std::size_t room);
 

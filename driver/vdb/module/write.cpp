@@ -46,6 +46,29 @@ openvdb::GridPtrVec grids_of(const FathomVdbGrid &from) {
     return grids;
 }
 
+template <class Grid, class ValueAt>
+openvdb::GridPtrVec grid_of(const FathomVdbGrid &places, const FathomVdbNumbers &from,
+                            openvdb::GridClass kind, const ValueAt &value_at) {
+    const auto grid = Grid::create();
+    grid->setName(from.name);
+    grid->setGridClass(kind);
+    grid->setTransform(transform_of(places));
+    auto values = grid->getAccessor();
+    for (std::size_t k = 0; k < places.count; ++k)
+        values.setValue(place_of(places, k), value_at(k));
+    return {grid};
+}
+
+openvdb::GridPtrVec grids_of(const FathomVdbGrid &places, const FathomVdbNumbers &from) {
+    if (from.components == 1)
+        return grid_of<openvdb::FloatGrid>(places, from, openvdb::GRID_FOG_VOLUME,
+                                           [&](std::size_t k) { return from.values[k]; });
+    return grid_of<openvdb::Vec3SGrid>(places, from, openvdb::GRID_UNKNOWN, [&](std::size_t k) {
+        const float *v = from.values + 3 * k;
+        return openvdb::Vec3s(v[0], v[1], v[2]);
+    });
+}
+
 // A file has an identifier of 36 letters behind 21 bytes of its head, made at random. One of the
 // file's own bytes makes files of equal volumes equal.
 void name_by_content(std::string &bytes) {
@@ -68,13 +91,13 @@ void name_by_content(std::string &bytes) {
 } // namespace
 
 extern "C" __attribute__((visibility("default"))) int
-fathom_write_vdb(const FathomVdbGrid *grid,
-                 void (*take)(void *to, const char *bytes, std::size_t count), void *to, char *why,
-                 std::size_t room) {
+fathom_write_volume(const FathomVdbGrid *grid, const FathomVdbNumbers *numbers,
+                    void (*take)(void *to, const char *bytes, std::size_t count), void *to,
+                    char *why, std::size_t room) {
     try {
         openvdb::initialize();
         std::ostringstream stream(std::ios::binary);
-        openvdb::io::Stream(stream).write(grids_of(*grid));
+        openvdb::io::Stream(stream).write(numbers ? grids_of(*grid, *numbers) : grids_of(*grid));
         std::string bytes = std::move(stream).str();
         name_by_content(bytes);
         take(to, bytes.data(), bytes.size());
