@@ -51,6 +51,58 @@ bool same(Graph &graph, NodeId a, NodeId b, Work *work) {
 
 namespace {
 
+// The same where a polynomial is 0: polynomials that differ by a multiple of it, lengths whose squares
+// do, and what is made of such in the same way.
+class SameWhereZero {
+  public:
+    SameWhereZero(Graph &graph, Polynomial zero, Work &work)
+        : graph_(graph), zero_(std::move(zero)), expansion_(graph, &work), work_(work) {}
+
+    bool operator()(NodeId a, NodeId b, int depth = 0) {
+        constexpr int max_depth = 8;
+        if (a == b) return true;
+        const ir::Node x = graph_[a], y = graph_[b];
+        if (x.type != ir::Type::Float || y.type != x.type || depth > max_depth || work_.spent())
+            return false;
+        work_.take(1);
+        if (x.op == Op::Length && y.op == Op::Length) {
+            const NodeId u = graph_.arg(a, 0), v = graph_.arg(b, 0);
+            return differ_by_multiple(graph_.make(Op::Dot, {u, u}), graph_.make(Op::Dot, {v, v}));
+        }
+        if (differ_by_multiple(a, b)) return true;
+        if (x.op != y.op || x.count != y.count || x.count == 0 || x.payload != y.payload ||
+            tells_apart[x.op])
+            return false;
+        for (int i = 0; i < int(x.count); ++i)
+            if (!(*this)(graph_.arg(a, i), graph_.arg(b, i), depth + 1)) return false;
+        return true;
+    }
+
+  private:
+    bool differ_by_multiple(NodeId a, NodeId b) {
+        const auto p = expansion_.of(a), q = expansion_.of(b);
+        if (!p || !q) return false;
+        Polynomial rest = *p;
+        double size = 0;
+        for (const auto &[m, c] : *q) rest[m] -= c;
+        for (const auto &[m, c] : *p) size = std::max(size, std::fabs(c));
+        // the multiple that leaves nothing of the zero's largest term
+        const auto largest = std::ranges::max_element(
+            zero_, {}, [](const auto &term) { return std::fabs(term.second); });
+        if (largest == zero_.end()) return false;
+        const double times = rest[largest->first] / largest->second;
+        for (const auto &[m, c] : zero_) rest[m] -= times * c;
+        const double granted = rounding * std::clamp(size, 1e-30, 1e3);
+        return std::ranges::all_of(
+            rest, [&](const auto &term) { return std::fabs(term.second) <= granted; });
+    }
+
+    Graph &graph_;
+    Polynomial zero_;
+    Expansion expansion_;
+    Work &work_;
+};
+
 // The arms for u = v: u replaced by v, v by u, or one atom of u - v by what the others make it.
 bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b, Work &work) {
     auto agree = [&](NodeId from, NodeId to) {
@@ -67,7 +119,11 @@ bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b, Wor
     if (!graph.is_constant(v) && agree(v, u)) return true;
     auto p = polynomial(graph, u), q = polynomial(graph, v);
     if (!p || !q) return false;
+    double size = 0, left = 0;
+    for (const auto &[m, c] : *p) size = std::max(size, std::fabs(c));
     for (const auto &[m, c] : *q) (*p)[m] -= c;
+    for (const auto &[m, c] : *p) left = std::max(left, std::fabs(c));
+    if (left > 1e-6 * size && SameWhereZero(graph, *p, work)(a, b)) return true;
     for (const auto &[atom, c] : *p) {
         if (atom.size() != 1 || c == 0 || graph.is_constant(atom[0])) continue;
         bool elsewhere = false; // the atom must occur in this one term only

@@ -266,15 +266,46 @@ std::vector<NodeId> nodes_below(const Graph &graph, NodeId root) {
 
 } // namespace
 
+NodeId with_squares_compared(Graph &graph, NodeId root) {
+    ir::Substitution map;
+    for (NodeId id : nodes_below(graph, root)) {
+        const ir::Node node = graph[id];
+        if (node.op != Op::Less && node.op != Op::LessEqual) continue;
+        const NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
+        if (graph[a].op != Op::Length || graph[b].op != Op::Length) continue;
+        const NodeId u = graph.arg(a, 0), v = graph.arg(b, 0);
+        map[id] = graph.make(node.op, {graph.make(Op::Dot, {u, u}), graph.make(Op::Dot, {v, v})});
+    }
+    return map.empty() ? root : ir::substitute(graph, root, map);
+}
+
+// The one choice of vectors that a vector is made of, by component or whole.
+NodeId choice_in(const Graph &graph, NodeId vector, int depth = 0) {
+    constexpr int max_depth = 6;
+    constexpr ir::OpSet made{Op::Make, Op::Swizzle, Op::Add, Op::Sub, Op::Mul, Op::Div, Op::Neg};
+    if (graph[vector].op == Op::Select && ir::is_vector(graph.type(vector))) return vector;
+    if (!made[graph[vector].op] || depth > max_depth) return {};
+    NodeId found;
+    for (NodeId arg : graph.args(vector)) {
+        const NodeId own = choice_in(graph, arg, depth + 1);
+        if (own && found && own != found) return {};
+        if (own) found = own;
+    }
+    return found;
+}
+
 NodeId with_chosen_lengths(Graph &graph, NodeId root, Work &work) {
     ir::Substitution map;
     for (NodeId id : nodes_below(graph, root)) {
-        if (graph[id].op != Op::Length || graph[graph.arg(id, 0)].op != Op::Select) continue;
-        const NodeId of = graph.arg(id, 0), condition = graph.arg(of, 0), first = graph.arg(of, 1),
-                     second = graph.arg(of, 2);
+        if (graph[id].op != Op::Length) continue;
+        const NodeId choice = choice_in(graph, graph.arg(id, 0));
+        if (!choice) continue;
+        const NodeId condition = graph.arg(choice, 0), first = graph.arg(choice, 1),
+                     second = graph.arg(choice, 2);
         if (!graph.reads(condition).point || arms_agree(graph, condition, first, second, work))
             continue;
-        const NodeId a = graph.make(Op::Length, {first}), b = graph.make(Op::Length, {second});
+        const NodeId a = ir::substitute(graph, id, {{choice, first}}),
+                     b = ir::substitute(graph, id, {{choice, second}});
         if (arms_agree(graph, condition, a, b, work))
             map[id] = graph.make(Op::Select, {condition, a, b});
     }

@@ -25,8 +25,11 @@ std::optional<std::vector<ir::NodeId>> norm_parts(ir::Graph &graph, ir::NodeId i
 // the choice of lengths and their negatives, all over the expression below `root`.
 ir::NodeId with_signed_roots(ir::Graph &graph, ir::NodeId root);
 
-// The length of one of two vectors, whose lengths alone agree where the choice turns, as the choice
-// of the lengths, all over the expression below `root`.
+// |u| < |v| as |u|^2 < |v|^2, which is made of products, all over the expression below `root`.
+ir::NodeId with_squares_compared(ir::Graph &graph, ir::NodeId root);
+
+// The length of one of two vectors, or of a vector that has its components, where the lengths alone
+// agree where the choice turns: as the choice of the lengths, all over the expression below `root`.
 ir::NodeId with_chosen_lengths(ir::Graph &graph, ir::NodeId root, Work &work);
 
 } // namespace fathom::proof

@@ -6,6 +6,7 @@
 #include "proof/exact.h"
 #include "proof/flattener.h"
 #include "proof/forms.h"
+#include "proof/half_waves.h"
 #include "proof/polar.h"
 #include "proof/roots.h"
 
@@ -266,6 +267,7 @@ Tape flatten(Flattening &context, NodeId root) {
     Flattener flattener(context);
     if (const auto it = context.written.find(root); it != context.written.end()) root = it->second;
     root = written_out(context.graph, root); // forms are seen through calls
+    root = with_half_waves(context.graph, with_squares_compared(context.graph, root));
     root = with_chosen_lengths(context.graph, root, context.work);
     const bool steps = has_steps(context.graph, root),
                choices = context.borders && has_choices(context.graph, root);

@@ -122,10 +122,11 @@ class Adversary : public Chance {
             &Adversary::powers,      &Adversary::ratios, &Adversary::conditions,
             &Adversary::repetitions, &Adversary::loops,  &Adversary::nested,
             &Adversary::angles,      &Adversary::uses,   &Adversary::noise,
-            &Adversary::turns,       &Adversary::cells,  &Adversary::sized};
+            &Adversary::turns,       &Adversary::cells,  &Adversary::sized,
+            &Adversary::tilings};
         return (this->*makers[kind % makers.size()])();
     }
-    static constexpr std::size_t kinds = 18;
+    static constexpr std::size_t kinds = 19;
 
   private:
     // A linear form whose borders others share.
@@ -405,6 +406,33 @@ class Adversary : public Chance {
                " mix(b, a, h) - k * h * (1 - h) }\nimplicit(p => {\n let s = " + size +
                "\n let c = cos(w)\n let n = sin(w)\n let q = " + q + "\n let d = " + d +
                "\n 0.4 * (" + made + ")\n}, within: ball(2))\n";
+    }
+
+    // The nearer of two grids that are half a period apart, or nearly.
+    std::string tilings() {
+        const std::string shift = of({"h", "h", "-h", "1.5 * r", "0.9 * h", "vec2(h.x, 0)", "r"});
+        const std::string pair = of(
+            {"let a = p.xz % r - h\n let b = (p.xz - S) % r - h",
+             "let a = p.xz - r * round(p.xz / r)\n let u = p.xz + S\n let b = u - r * round(u / r)",
+             "let a = p.xz % r - h\n let u = p.xz - S\n let b = u - r * round(u / r)",
+             "let a = fract(p.xz) - 0.5\n let b = fract(p.xz - S) - 0.5"});
+        const std::string nearer =
+            of({"dot(a, a) < dot(b, b)", "length(a) < length(b)", "abs(a.x) < abs(b.x)",
+                "dot(a, a) <= dot(b, b)", "max(abs(a.x), abs(a.y)) < max(abs(b.x), abs(b.y))",
+                "length(a) < 1.1 * length(b)", "dot(abs(a), r) < dot(abs(b), r)", "a.x < b.x"});
+        const std::string measure = of(
+            {"max(dot(abs(g), vec2(0.5, 0.8660254)), abs(g.x)) - 0.4",
+             "length(vec3(g.x, p.y, g.y)) - 0.3", "length(g) - 0.3", "length(vec3(g, p.y)) - 0.3",
+             "max(abs(g.x), abs(g.y)) - 0.4", "length(g - 0.1)", "dot(g, g)", "abs(g.x * g.y)",
+             "g.x * g.y", "length(vec2(length(g) - 0.2, p.y)) - 0.1", "length(abs(g) - 0.2)",
+             "min(dot(abs(g), r), 0.3)", "length(2 * g + p.y)", "cos(6 * g.x) * 0.1"});
+        std::string text =
+            "let r = " + std::string(of({"vec2(1, 1.7320508)", "vec2(1, 1)", "vec2(0.8, 1.25)"})) +
+            "\n let h = r / 2\n " + pair + "\n let g = if " + nearer +
+            " { a } else { b }\n 0.4 * (" + measure + ")";
+        for (std::size_t at; (at = text.find('S')) != text.npos;) text.replace(at, 1, shift);
+        return param() + "implicit(p => {\n " + text + "\n}, within: " +
+               of({"ball(2)", "everywhere", "aabb([-1.5, -1, -2], [1.5, 2, 1.5])"}) + ")\n";
     }
 
     // Copies that differ from cell to cell, hidden at the cells' borders, or nearly.
