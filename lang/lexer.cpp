@@ -429,6 +429,9 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
     } else if (first.value >= 0x80) {
         report(Code::BadCharacter, begin, end, "names use the letters a to z, digits and `_`")
             .note("comments and strings may hold any letters");
+    } else if (text[0] == '\\') {
+        report(Code::BadCharacter, begin, end, "the language does not use `\\`")
+            .help("a function without a name is written `p => …`");
     } else if (text[0] == '$') {
         report(Code::BadCharacter, begin, end, "the language does not use `$`")
             .note(

@@ -2,6 +2,7 @@
 #include "base/srgb.h"
 #include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
+#include "typecheck/remedies.h"
 
 #include "ir/maps.h"
 
@@ -182,9 +183,11 @@ static Value eval_binary(Interpreter &ev, const File &ast, const lang::Binary &b
                 total = is_poison(right) ? total : poison();
             else if (!is_shape_op(total) || !is_shape_op(right)) {
                 const Value &wrong = is_shape_op(total) ? right : total;
-                report(ev, Code::TypeMismatch, is_shape_op(total) ? right_place : total_place,
-                       fmt::format("`-` cuts a shape out of a shape, this is {}",
-                                   describe(ev, wrong)));
+                Diagnostic &d =
+                    report(ev, Code::TypeMismatch, is_shape_op(total) ? right_place : total_place,
+                           fmt::format("`-` cuts a shape out of a shape, this is {}",
+                                       describe(ev, wrong)));
+                help_with_cut(d, wrong);
                 total = poison();
             } else if (ev.scene.shapes[shape_of(right)].kind != ir::ShapeKind::Empty) {
                 if (kept.empty()) kept = {total}, kept_places = {total_place};

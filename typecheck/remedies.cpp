@@ -1,5 +1,4 @@
-// The tables of what other languages and libraries call things, and the edits that carry a call
-// over.
+// What to write in place of what other languages have, and the edits that carry a call over.
 #include "typecheck/remedies.h"
 
 #include "base/suggest.h"
@@ -12,145 +11,15 @@
 
 namespace fathom::typecheck {
 
-// -- names ---------------------------------------------------------------------------------------
-
-std::string_view name_from_elsewhere(std::string_view name) {
-    static const std::unordered_map<std::string_view, std::string_view> ours = {
-        {"cube", "box"},
-        {"cuboid", "box"},
-        {"square", "rectangle"},
-        {"perlin", "noise"},
-        {"snoise", "simplex"},
-        {"voronoi", "worley"},
-        {"cellular", "worley"},
-        {"color", "rgb"},
-        {"linear_extrude", "extrude"},
-        {"extrudeLinear", "extrude"},
-        {"pancake", "extrude"},
-        {"rotate_extrude", "revolve"},
-        {"extrudeRotate", "revolve"},
-        {"lathe", "revolve"},
-        {"move", "translate"},
-        {"symmetry", "mirror"},
-        {"lerp", "mix"},
-        {"frac", "fract"},
-        {"fabs", "abs"},
-        {"fmod", "mod"},
-        {"atan2", "atan"},
-        {"mag", "length"},
-        {"norm", "length"},
-        {"rsqrt", "inversesqrt"},
-        {"rand", "random"},
-        {"rot", "rotate2"},
-        {"rot2", "rotate2"},
-        {"PI", "pi"},
-        {"M_PI", "pi"},
-        {"TAU", "tau"},
-        {"TWO_PI", "tau"},
-        {"iTime", "time"},
-        {"iGlobalTime", "time"},
-        {"u_time", "time"},
-        {"Vector3", "vec3"},
-        {"Vector2", "vec2"},
-        {"count", "len"},
-        {"size", "len"},
-        {"nothing", "empty"},
-        {"half_space", "plane"},
-        {"half_plane", "plane"},
-        {"frustum", "capped_cone"},
-        {"cone_frustum", "capped_cone"},
-        {"truncated_cone", "capped_cone"},
-        {"round_box", "rounded_box"},
-        {"roundedCuboid", "rounded_box"},
-        {"rect", "rectangle"},
-        {"ball3", "sphere"},
-        {"donut", "torus"},
-        {"onion", "shell"},
-        {"hollow", "shell"},
-        {"inflate", "offset"},
-        {"dilate", "offset"},
-        {"stretch", "elongate"},
-        {"flip", "mirror"},
-        {"array", "repeat"},
-        {"polar_repeat", "repeat_polar"},
-        {"radial_repeat", "repeat_polar"},
-        {"smooth_min", "smin"},
-        {"smooth_max", "smax"},
-        {"blobs", "metaballs"},
-        {"echo", "print"},
-        {"printf", "print"},
-        {"parseFloat", "float"},
-        {"parseInt", "int"},
-        {"subtract", "difference"},
-        {"subtraction", "difference"},
-        {"intersect", "intersection"}};
-    const auto it = ours.find(name);
-    return it == ours.end() ? std::string_view() : it->second;
-}
-
-std::string_view way_from_elsewhere(std::string_view name) {
-    static const std::unordered_map<std::string_view, std::string_view> ways = {
-        {"smooth", "shapes flow together in `smooth_union(k) { … }`"},
-        {"hull", "there is no convex hull; `smooth_union(r) { … }` joins shapes, `round_cone` and "
-                 "`capsule` join two balls"},
-        {"minkowski", "there is no Minkowski sum; with a ball it is `.offset(r)`"},
-        {"polyhedron", "a convex solid is an intersection of planes: `plane(normal, offset) & …`"},
-        {"text", "there are no letters; a flat shape is made by `polygon`, `segment` and `bezier`"},
-        {"text3d", "there are no letters; a flat shape is made by `polygon` and `segment`"},
-        {"projection", "there is no projection; flat shapes are `circle`, `rectangle`, `polygon`"},
-        {"surface", "a height field is `heightfield(f, size)`"},
-        {"texture", "an image is a field: `image(\"file.png\")`, called with a vec2"},
-        {"texture2D", "an image is a field: `image(\"file.png\")`, called with a vec2"},
-        {"iResolution", "a field knows no screen: it is a function of the point alone"},
-        {"fragCoord", "a field knows no screen: it is a function of the point alone"},
-        {"gl_FragCoord", "a field knows no screen: it is a function of the point alone"},
-        {"sum", "a list is summed by `fold(list, 0, (a, b) => a + b)`"},
-        {"reduce", "a list is folded by `fold(list, first, (a, b) => …)`"},
-        {"enumerate", "write `for i in 0..len(list) { let x = list[i] … }`"},
-        {"str", "a string shows a value where it is joined to it: `\"r = \" + r`"},
-        {"String", "a string shows a value where it is joined to it: `\"r = \" + r`"},
-        {"deg", "the unit touches its number, `45deg`; a name is converted by `radians(x)`"},
-        {"rad", "an angle is in radians as it is"},
-        {"iChannel0", "an image is `image(\"file.png\")`, called with a vec2"},
-        {"pass", "an empty body is `{ }`; leave the word away"},
-        {"append", "a list is made longer by `concat(list, [x])`, which gives a new one"},
-        {"push", "a list is made longer by `concat(list, [x])`, which gives a new one"},
-        {"extend", "lists are joined by `concat(a, b)`, which gives a new one"},
-        {"forEach", "a loop runs over a list: `for x in list { … }`"},
-        {"for_each", "a loop runs over a list: `for x in list { … }`"},
-        {"colorize", "a shape is given a colour or a material by `.paint(…)`"},
-        {"colour", "a shape is given a colour or a material by `.paint(…)`"},
-        {"hue", "a colour by its hue is `hsv(h, s, v)`"},
-        {"make_shape", "a shape is made of a function of the point: `implicit(p => …)`"},
-        {"NaN", "every number has a value; where there is no limit, write `inf`"},
-        {"nan", "every number has a value; where there is no limit, write `inf`"},
-        {"Infinity", "write `inf`"},
-        {"rotateX", "write `.rotate(angle, axis: X)`"},
-        {"rotateY", "write `.rotate(angle, axis: Y)`"},
-        {"rotateZ", "write `.rotate(angle, axis: Z)`"},
-        {"rotate_x", "write `.rotate(angle, axis: X)`"},
-        {"rotate_y", "write `.rotate(angle, axis: Y)`"},
-        {"rotate_z", "write `.rotate(angle, axis: Z)`"}};
-    const auto it = ways.find(name);
-    return it == ways.end() ? std::string_view() : it->second;
-}
-
-std::string_view type_from_elsewhere(std::string_view name) {
-    static const std::unordered_map<std::string_view, std::string_view> ours = {
-        {"number", "float"}, {"real", "float"},  {"double", "float"},  {"integer", "int"},
-        {"boolean", "bool"}, {"str", "string"},  {"String", "string"}, {"Vector2", "vec2"},
-        {"Vector3", "vec3"}, {"float2", "vec2"}, {"float3", "vec3"},   {"point", "vec3"},
-        {"colour", "color"}, {"solid", "shape"}, {"SDF", "shape"},     {"matrix", "mat3"}};
-    const auto it = ours.find(name);
-    return it == ours.end() ? std::string_view() : it->second;
-}
-
 void help_with_shape(Diagnostic &d, std::string_view name) {
     constexpr const char *painted = "a shape is given a colour or a material by `.paint(…)`";
     constexpr std::pair<std::string_view, std::string_view> ways[] = {
         {"min", "shapes are united with `|`"},
         {"max", "shapes are intersected with `&`"},
         {"mix", "shapes are mixed by `blend(a, b, t)`"},
+        {"smin", "shapes flow together in `smooth_union(k) { a; b }`"},
+        {"smax", "shapes meet smoothly in `smooth_intersection(k) { a; b }`"},
+        {"length", "a distance is measured from a function of the point: `implicit(p => …)`"},
         {"smoothstep", "shapes flow together in `smooth_union(r) { … }`"},
         {"abs", "a shape's skin is `.shell(thickness)`"},
         {"round", "`.offset(r)` rounds what is convex and grows by r; boxes have `rounded_box`"},
@@ -165,6 +34,13 @@ void help_with_shape(Diagnostic &d, std::string_view name) {
     if (name.ends_with("_union") || name.ends_with("_intersection") ||
         name.ends_with("_difference"))
         d.help(fmt::format("the shapes stand in a block behind it: `{}(r) {{ … }}`", name));
+}
+
+void help_with_cut(Diagnostic &d, const Value &cut) {
+    if (cut.kind == ValueKind::Region)
+        d.help("regions are cut by regions: `ball(3) - tube(Y, 0.1)`");
+    else if (is_numeric(cut))
+        d.help("`.offset(r)` moves a shape's surface outwards by r, `.offset(-r)` inwards");
 }
 
 // -- arguments -----------------------------------------------------------------------------------

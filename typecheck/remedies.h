@@ -34,6 +34,9 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
 void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeName wanted,
                      Span place);
 
+// For what is no shape, in a difference of shapes.
+void help_with_cut(Diagnostic &d, const Value &cut);
+
 // True, and reported, where a body ends with a `let`, `var` or assignment: its writer took that for
 // its value.
 bool report_unfinished(Interpreter &ev, const Closure &c, const lang::Function &f,
