@@ -1,5 +1,7 @@
 #include "proof/param_bounds.h"
 
+#include "ir/passes/inline.h"
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -12,7 +14,7 @@ using ir::Op;
 
 namespace {
 
-constexpr std::size_t most_params = 4;
+constexpr std::size_t most_params = 4, most_moving = 2, most_nodes = 4000;
 constexpr int pieces = 8; // of a range
 constexpr int most_halvings = 3;
 constexpr double pays_from = 1.25;     // times the present bound, from where on a formula is
@@ -44,17 +46,61 @@ std::unordered_map<std::uint32_t, std::vector<NodeId>> params_of(const ir::Graph
     return out;
 }
 
-// Whether an expression is g + a h with a param a, and g and h that do not read it. Its slope in the
+// A number that stands still, and the field as it depends on that.
+struct Input {
+    NodeId value; // a float
+    NodeId field; // in which `node` is this number
+    Op op;        // of `node`: a Param, or a Var
+    std::uint32_t payload;
+    Interval range;
+    double present;
+};
+
+// Fractions and sines of the time, each once, where what stands above them reads more than the time.
+std::vector<NodeId> moving_with_time(const ir::Graph &graph, NodeId field) {
+    constexpr ir::OpSet bounded{Op::Fract, Op::Mod, Op::Sin, Op::Cos};
+    std::vector<NodeId> out, todo{field};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!id || !seen.insert(id).second || !graph.reads(id).time) continue;
+        const ir::Node &node = graph[id];
+        const ir::Graph::Reads reads = graph.reads(id);
+        if (bounded[node.op] && node.type == ir::Type::Float && !reads.point && !reads.params &&
+            !reads.free_vars) {
+            out.push_back(id);
+            continue;
+        }
+        if (node.op == Op::Loop) {
+            const ir::Loop &loop = graph.loop(ir::LoopId{node.payload});
+            todo.insert(todo.end(), loop.next.begin(), loop.next.end());
+            todo.push_back(loop.condition);
+        }
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    // The sine and the cosine of one angle turn a vector, which is seen of both alone.
+    std::vector<NodeId> alone;
+    for (NodeId one : out)
+        if (std::ranges::none_of(out, [&](NodeId other) {
+                return other != one && graph.arg(other, 0) == graph.arg(one, 0);
+            }))
+            alone.push_back(one);
+    std::ranges::sort(alone, {}, &NodeId::index);
+    return alone;
+}
+
+// Whether an expression is g + a h with an input a, and g and h that do not read it. Its slope in the
 // point is then |grad g + a grad h|, whose supremum is a convex function of a.
 class AffineIn {
   public:
-    AffineIn(const ir::Graph &graph, std::uint32_t param) : graph_(graph), param_(param) {}
-    bool operator()(NodeId id) { return degree(id) <= 1; }
+    AffineIn(const ir::Graph &graph, const Input &input) : graph_(graph), input_(input) {}
+    bool operator()() { return degree(input_.field) <= 1; }
 
   private:
     static constexpr int more = 2;
     int degree(NodeId id) {
-        if (!id || !graph_.reads(id).params) return 0;
+        if (!id || !(graph_.reads(id).params || graph_.reads(id).free_vars)) return 0;
         if (const auto found = known_.find(id); found != known_.end()) return found->second;
         return known_[id] = compute(id);
     }
@@ -63,7 +109,8 @@ class AffineIn {
         constexpr ir::OpSet linear{Op::Add, Op::Sub, Op::Neg, Op::Make, Op::Swizzle, Op::ToFloat};
         constexpr ir::OpSet products{Op::Mul, Op::Dot};
         const ir::Node node = graph_[id];
-        if (node.op == Op::Param) return node.payload == param_ ? 1 : 0;
+        if (node.op == Op::Param || node.op == Op::Var)
+            return node.op == input_.op && node.payload == input_.payload ? 1 : 0;
         if (read_elsewhere[node.op]) return more;
         int most = 0, sum = 0;
         for (NodeId arg : graph_.args(id)) {
@@ -75,7 +122,7 @@ class AffineIn {
         return node.op == Op::Div && degree(graph_.arg(id, 1)) == 0 ? most : more;
     }
     const ir::Graph &graph_;
-    std::uint32_t param_;
+    const Input &input_;
     std::unordered_map<NodeId, int> known_;
 };
 
@@ -87,81 +134,103 @@ class ParamBounds {
           budget_(budget) {}
 
     ParamBound find(double whole) {
-        const ir::Scene &scene = *ranges_.scene;
-        auto read = params_of(graph_, field_);
-        std::erase_if(read, [&](const auto &entry) {
-            const ir::Param &p = scene.params[entry.first];
-            const Interval &range = ranges_.params[entry.first][0];
-            return p.structural || !p.has_range || !range.finite() || !(range.lo < range.hi) ||
-                   (p.type != ir::Type::Float && p.type != ir::Type::Int);
-        });
-        if (read.empty() || read.size() > most_params) return {};
-        Ranges present = ranges_;
-        for (const auto &[index, nodes] : read)
-            present.params[index][0] = Interval(scene.params[index].value[0]);
-        if (!pays(whole, bound(present))) return {};
         ParamBound least;
-        std::vector<std::uint32_t> order;
-        for (const auto &entry : read) order.push_back(entry.first);
-        std::ranges::sort(order);
-        for (const std::uint32_t index : order) {
-            if (!pays(whole, at(index, Interval(scene.params[index].value[0])))) continue;
-            most_ = 0;
-            const NodeId one = of_param(index, read[index].front());
-            least.formula = least.formula ? graph_.make(Op::Min, {least.formula, one}) : one;
-            least.most = std::min(least.most, most_);
+        const std::vector<Input> params = read_params();
+        if (!params.empty() && params.size() <= most_params) {
+            Ranges present = ranges_;
+            for (const Input &param : params)
+                present.params[param.payload][0] = Interval(param.present);
+            if (pays(whole, bound(present, field_)))
+                for (const Input &param : params) add(param, whole, least);
         }
+        const std::vector<Input> moving = read_moving();
+        if (moving.size() <= most_moving)
+            for (const Input &input : moving) add(input, std::min(whole, least.most), least);
         return least;
     }
 
   private:
+    std::vector<Input> read_params() {
+        const ir::Scene &scene = *ranges_.scene;
+        std::vector<Input> out;
+        for (const auto &[index, nodes] : params_of(graph_, field_)) {
+            const ir::Param &p = scene.params[index];
+            const Interval &range = ranges_.params[index][0];
+            if (p.structural || !p.has_range || !range.finite() || !(range.lo < range.hi) ||
+                (p.type != ir::Type::Float && p.type != ir::Type::Int))
+                continue;
+            const NodeId node = nodes.front(),
+                         value = p.type == ir::Type::Int ? graph_.make(Op::ToFloat, {node}) : node;
+            out.push_back({value, field_, Op::Param, index, range, p.value[0]});
+        }
+        std::ranges::sort(out, {}, &Input::payload);
+        return out;
+    }
+    // Each as a variable of its own.
+    std::vector<Input> read_moving() {
+        if (!graph_.reads(field_).time) return {};
+        const ir::WithoutCalls written = ir::without_calls(graph_, field_, most_nodes);
+        if (!written.all) return {};
+        std::vector<Input> out;
+        for (NodeId node : moving_with_time(graph_, written.root)) {
+            const Interval range = range_of(context_, ranges_, node, Cell{})[0];
+            if (!range.finite() || !(range.lo < range.hi)) continue;
+            const NodeId variable = graph_.fresh_var(ir::Type::Float);
+            out.push_back({node, ir::substitute(graph_, written.root, {{node, variable}}), Op::Var,
+                           graph_[variable].payload, range, range.middle()});
+        }
+        return out;
+    }
+
+    void add(const Input &input, double whole, ParamBound &least) {
+        if (!pays(whole, at(input, Interval(input.present)))) return;
+        most_ = 0;
+        const NodeId one = AffineIn(graph_, input)() ? by_lines(input) : by_pieces(input);
+        least.formula = least.formula ? graph_.make(Op::Min, {least.formula, one}) : one;
+        least.most = std::min(least.most, most_);
+    }
+
     static bool pays(double whole, double present) {
         return std::isfinite(whole) && whole > pays_from * present + 0.05;
     }
-    double bound(const Ranges &ranges) {
-        return bound_field(context_, ranges, field_, domain_, budget_).lipschitz * allowance;
+    double bound(const Ranges &ranges, NodeId field) {
+        return bound_field(context_, ranges, field, domain_, budget_).lipschitz * allowance;
     }
-    double at(std::uint32_t index, Interval values) {
+    double at(const Input &input, Interval values) {
         Ranges ranges = ranges_;
-        ranges.params[index][0] = values;
-        const double found = bound(ranges);
+        (input.op == Op::Param ? ranges.params[input.payload] : ranges.vars[input.payload])[0] =
+            values;
+        const double found = bound(ranges, input.field);
         most_ = std::max(most_, found);
         return found;
     }
 
-    NodeId of_param(std::uint32_t index, NodeId param) {
-        const Interval range = ranges_.params[index][0];
-        const NodeId value =
-            graph_[param].type == ir::Type::Int ? graph_.make(Op::ToFloat, {param}) : param;
-        return AffineIn(graph_, index)(field_) ? by_lines(index, value, range)
-                                               : by_pieces(index, value, range);
-    }
-
     // Chords of a convex function lie above it between their ends; the greatest of several, everywhere
     // between the first end and the last.
-    NodeId by_lines(std::uint32_t index, NodeId value, Interval range) {
+    NodeId by_lines(const Input &input) {
+        const Interval range = input.range;
         std::vector<double> ends{range.lo, range.hi};
         if (range.lo < 0 && range.hi > 0) ends = {range.lo, 0, range.hi};
         NodeId most;
         for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-            add_line(index, value, ends[i], at(index, Interval(ends[i])), ends[i + 1],
-                     at(index, Interval(ends[i + 1])), most_halvings, most);
+            add_line(input, ends[i], at(input, Interval(ends[i])), ends[i + 1],
+                     at(input, Interval(ends[i + 1])), most_halvings, most);
         return most;
     }
-    void add_line(std::uint32_t index, NodeId value, double a, double at_a, double b, double at_b,
-                  int halvings, NodeId &most) {
+    void add_line(const Input &input, double a, double at_a, double b, double at_b, int halvings,
+                  NodeId &most) {
         const double middle = (a + b) / 2;
         if (halvings > 0) {
-            const double there = at(index, Interval(middle));
+            const double there = at(input, Interval(middle));
             if ((at_a + at_b) / 2 > near_enough * there + 0.02) {
-                add_line(index, value, a, at_a, middle, there, halvings - 1, most);
-                add_line(index, value, middle, there, b, at_b, halvings - 1, most);
+                add_line(input, a, at_a, middle, there, halvings - 1, most);
+                add_line(input, middle, there, b, at_b, halvings - 1, most);
                 return;
             }
         }
         const double slope = (at_b - at_a) / (b - a);
-        const NodeId line =
-            graph_.add(graph_.number(at_a - slope * a), graph_.mul(graph_.number(slope), value));
+        const NodeId line = graph_.add(graph_.number(at_a - slope * a),
+                                       graph_.mul(graph_.number(slope), input.value));
         most = most ? graph_.make(Op::Max, {most, line}) : line;
     }
 
@@ -176,7 +245,8 @@ class ParamBounds {
         out.push_back(range.hi);
         return out;
     }
-    NodeId by_pieces(std::uint32_t index, NodeId value, Interval range) {
+    NodeId by_pieces(const Input &input) {
+        const Interval range = input.range;
         const std::vector<double> ends = ends_of_pieces(range);
         NodeId out;
         for (std::size_t i = pieces; i-- > 0;) {
@@ -184,9 +254,10 @@ class ParamBounds {
             const double lo = ends[i], hi = ends[i + 1],
                          rim = 1e-6 * std::max(std::fabs(lo), std::fabs(hi));
             const NodeId here = graph_.number(
-                at(index, Interval(std::max(lo - rim, range.lo), std::min(hi + rim, range.hi))));
-            out = out ? graph_.make(Op::Select,
-                                    {graph_.make(Op::Less, {value, graph_.number(hi)}), here, out})
+                at(input, Interval(std::max(lo - rim, range.lo), std::min(hi + rim, range.hi))));
+            out = out ? graph_.make(
+                            Op::Select,
+                            {graph_.make(Op::Less, {input.value, graph_.number(hi)}), here, out})
                       : here;
         }
         return out;
@@ -205,7 +276,8 @@ class ParamBounds {
 
 ParamBound bound_by_params(Flattening &context, const Ranges &ranges, NodeId field,
                            const Domain &domain, const Budget &budget, double whole) {
-    if (!context.graph.reads(field).params || !ranges.scene) return {};
+    const ir::Graph::Reads reads = context.graph.reads(field);
+    if (!(reads.params || reads.time) || !ranges.scene) return {};
     return ParamBounds(context, ranges, field, domain, budget).find(whole);
 }
 

@@ -48,9 +48,9 @@ const Case cases[] = {
 };
 
 // The steepest of many pairs of points, near and far, in and round the shape.
-double steepest(const ir::Scene &scene, test::Dice &dice) {
+double steepest(const ir::Scene &scene, test::Dice &dice, double time = 0) {
     const cpu::Program program = cpu::compile(scene, scene.distance);
-    cpu::Scratch scratch = cpu::make_scratch(program, cpu::inputs_of(scene, 0));
+    cpu::Scratch scratch = cpu::make_scratch(program, cpu::inputs_of(scene, time));
     constexpr std::size_t pairs = 4000;
     std::array<std::vector<float>, 3> points;
     const double size = 1.3 * ir::frame_of(scene, ir::view_of(scene, 0, 1), 100).radius;
@@ -105,6 +105,55 @@ TEST_CASE("bounds that follow params hold at every value, and cost nothing at a 
         for (const ir::ShapeFact &fact : scene.facts)
             if (fact.lipschitz) bound = std::max(bound, ir::value_of(scene, fact.lipschitz, 0)[0]);
         CHECK(bound <= c.most);
+    }
+}
+
+TEST_CASE("bounds that follow the time hold at every moment, and cost nothing at a harmless one") {
+    struct Moving {
+        const char *name, *text;
+        double free, most; // a time at which the bound is at most `most`
+        double sup;        // what it is at most at all
+    };
+    const Moving moving[] = {
+        {"a sine", "sphere(2).displace(p => sin(time) * sin(3 * p.x))\n", 0, 1.001, 4.01},
+        {"a fraction",
+         "implicit(p => length(p) - 1 - 0.2 * fract(time) * sin(5 * p.x), within: ball(2))\n", 2,
+         1.001, 2.01},
+        {"a scale",
+         "fn size() = 1 + 0.5 * sin(2 * time)\n"
+         "implicit(p => length(p) - 1 - 0.1 * noise(3 * p * size()) / size(), within: ball(2))\n",
+         0, 2.5, 2.6},
+        {"in a loop",
+         "fn f(p: vec3) -> float {\n  var s = 0.0\n"
+         "  for i in 0..3 { s = s + fract(time) * sin(p.x * (i + 1)) / 3 }\n  s\n}\n"
+         "sphere(2).displace(p => f(p))\n",
+         1, 1.251, 3.01},
+        {"two that move",
+         "implicit(p => length(p) - 1 + 0.2 * sin(time) * sin(4 * p.x * (1 + fract(time / 3))),\n"
+         "    within: ball(2))\n",
+         0, 1.001, 2.7},
+    };
+    test::Dice dice{8};
+    for (const Moving &c : moving) {
+        INFO(c.name);
+        const driver::Compilation made = driver::compile_text("time.sdf", c.text, {}, {});
+        REQUIRE(made.good());
+        bool follows = false;
+        double bound = 0, sup = 0;
+        for (const ir::ShapeFact &fact : made.scene.facts) {
+            if (!fact.lipschitz) continue;
+            follows |= made.scene.graph.reads(fact.lipschitz).time;
+            bound = std::max(bound, ir::value_of(made.scene, fact.lipschitz, c.free)[0]);
+            sup = std::max(sup, fact.lipschitz_sup);
+        }
+        CHECK(follows);
+        CHECK(bound <= c.most);
+        CHECK(sup <= c.sup);
+        for (int i = 0; i <= 60; ++i) {
+            const double time = 0.137 * i + (i > 40 ? 100 * dice.next() : 0);
+            INFO("at " << time);
+            CHECK(steepest(made.scene, dice, time) <= 1.0005);
+        }
     }
 }
 
