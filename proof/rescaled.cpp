@@ -22,7 +22,9 @@ using ir::OpSet;
 
 class Inward {
   public:
-    Inward(Graph &graph, Factor factor) : graph_(graph), factor_(factor) {}
+    Inward(Graph &graph, Factor factor) : graph_(graph), factor_(factor) {
+        extremes_of(factor.divides ? Op::Max : Op::Min, factor.number);
+    }
 
     struct Moved {
         NodeId value;
@@ -50,6 +52,45 @@ class Inward {
         for (int i = 0; i < power; ++i)
             id = factor_.divides ? graph_.div(id, factor_.number) : graph_.mul(id, factor_.number);
         return id;
+    }
+
+    // Of s = min(a, b, …), what it is the least of: s (x/a) = x min(s/a, 1). Of 1/max(a, b, …),
+    // likewise, what the greatest is of.
+    void extremes_of(Op op, NodeId id) {
+        constexpr std::size_t most = 8;
+        if (graph_[id].op != op || extremes_.size() > most) {
+            if (id != factor_.number) extremes_.push_back(id);
+            return;
+        }
+        for (int i = 0; i < 2; ++i) extremes_of(op, graph_.arg(id, i));
+    }
+    bool is_extreme(NodeId id) const { return std::ranges::count(extremes_, id) > 0; }
+    // s/a, or a/s, where that is at most 1; else s/a.
+    NodeId share(NodeId a) {
+        const NodeId s = factor_.number;
+        const NodeId ratio = factor_.divides ? graph_.div(a, s) : graph_.div(s, a);
+        return is_extreme(a) ? graph_.make(Op::Min, {ratio, graph_.number(1)}) : ratio;
+    }
+    // x/a, or x a, with a or one of its components one of those.
+    NodeId by_shares(NodeId id) {
+        const Op op = graph_[id].op;
+        if (extremes_.empty() || op != (factor_.divides ? Op::Mul : Op::Div)) return {};
+        const ir::Type type = graph_.type(id);
+        for (int i = factor_.divides ? 0 : 1; i < 2; ++i) {
+            const NodeId by = graph_.arg(id, i), of = graph_.arg(id, 1 - i);
+            if (graph_.reads(by).point) continue;
+            std::vector<NodeId> parts;
+            bool any = false;
+            for (int c = 0; c < ir::components(type); ++c) {
+                parts.push_back(graph_.component(by, c));
+                any |= is_extreme(parts.back());
+            }
+            if (!any) continue;
+            for (NodeId &part : parts) part = share(part);
+            const NodeId shares = parts.size() == 1 ? parts[0] : graph_.make(Op::Make, type, parts);
+            return graph_.mul(of, shares);
+        }
+        return {};
     }
 
     bool is_factor(NodeId id) const {
@@ -185,8 +226,10 @@ class Inward {
                                Op::Splat, Op::Swizzle, Op::Union, Op::Intersection},
             sums{Op::Add, Op::Sub}, products{Op::Mul, Op::Dot};
         const ir::Node node = graph_[id];
-        if (power == 1)
+        if (power == 1) {
             if (const NodeId x = without_inverse(id)) return x;
+            if (const NodeId x = by_shares(id)) return x;
+        }
         if (sums[node.op])
             if (const NodeId form = known_form(id, power); form != id) return form;
         if (by_all[node.op]) return with_all_args(id, power);
@@ -207,6 +250,7 @@ class Inward {
 
     Graph &graph_;
     Factor factor_;
+    std::vector<NodeId> extremes_;
     std::map<std::pair<NodeId, int>, Moved> known_;
     int depth_ = 0;
 };

@@ -121,6 +121,27 @@ TEST_CASE("a number and its inverse leave an expression of the same value") {
     }
 }
 
+TEST_CASE("the least of several sizes meets each of them") {
+    for (const bool divides : {false, true}) {
+        Sized z;
+        Graph &g = z.g;
+        const NodeId t = g.time(), sizes = z.s.vec(z.size, t, g.number(1.2));
+        const NodeId extreme = g.make(divides ? Op::Max : Op::Min, {z.size, t}),
+                     inner = z.box(divides ? g.mul(z.s.p, sizes) : g.div(z.s.p, sizes));
+        const auto found = proof::rescaled(g, {extreme, divides}, inner);
+        REQUIRE(found);
+        for (const double by : {0.3, 1.0, 1.7})
+            for (const double time : {0.4, 1.1, 1.9}) {
+                const auto at = [&](NodeId of) {
+                    return z.value(ir::substitute(g, of, {{t, g.number(time)}}), by,
+                                   {0.9, -1.3, 0.7});
+                };
+                const double s = divides ? 1 / std::max(by, time) : std::min(by, time);
+                CHECK(at(found->value) == Approx(s * at(inner)).epsilon(1e-9).margin(1e-9));
+            }
+    }
+}
+
 TEST_CASE("what no inverse is in stays as it is") {
     Sized z;
     CHECK_FALSE(proof::rescaled(z.g, {z.size, false}, z.box(z.s.p)));
