@@ -2,9 +2,11 @@
 #pragma once
 
 #include "proof/linear_maps.h"
+#include "proof/rescaled.h"
 #include "proof/supports.h"
 #include "proof/tape.h"
 
+#include <map>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
@@ -29,6 +31,7 @@ struct Flattener {
     std::unordered_set<NodeId> cancelling; // steps and choices
     std::unordered_set<NodeId> stepped;    // angles that steps alone read
     std::unordered_set<NodeId> known_linear;
+    std::map<std::pair<NodeId, bool>, RescaledNodes> met; // by factor, and whether it divides
     int steps_of_pieces = 0;
     Supports supports{tape};
 

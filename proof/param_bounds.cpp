@@ -183,7 +183,12 @@ class ParamBounds {
     }
 
     void add(const Input &input, double whole, ParamBound &least) {
+        const std::size_t left = context_.work.left;
         if (!pays(whole, at(input, Interval(input.present)))) return;
+        // A formula of the time is worth no refusal for want of work.
+        constexpr std::size_t searches = 2 * (pieces + most_halvings);
+        if (input.op == Op::Var && (left - context_.work.left) * searches > context_.work.left / 2)
+            return;
         most_ = 0;
         const NodeId one = AffineIn(graph_, input)() ? by_lines(input) : by_pieces(input);
         least.formula = least.formula ? graph_.make(Op::Min, {least.formula, one}) : one;

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <span>
 
@@ -22,33 +21,32 @@ using ir::OpSet;
 
 class Inward {
   public:
-    Inward(Graph &graph, Factor factor) : graph_(graph), factor_(factor) {
+    Inward(Graph &graph, Factor factor, RescaledNodes &known, Work &work)
+        : graph_(graph), factor_(factor), known_(known), work_(work) {
         extremes_of(factor.divides ? Op::Max : Op::Min, factor.number);
     }
 
-    struct Moved {
-        NodeId value;
-        bool met = false;
-    };
-    // s^power times the expression, power >= 1.
-    Moved times(NodeId id, int power) {
+    // s^power times the expression, power >= 1, where s meets an inverse of itself; else none.
+    NodeId moved(NodeId id, int power) {
         const auto key = std::pair(id, power);
         if (const auto known = known_.find(key); known != known_.end()) return known->second;
-        if (known_.size() > most_nodes || depth_ > max_depth) return {beside(id, power)};
+        if (known_.size() > most_nodes || depth_ > max_depth || work_.spent()) return {};
+        work_.take(2);
         ++depth_;
         const NodeId inside = made(id, power);
         --depth_;
-        const Moved out = inside ? Moved{inside, true} : Moved{beside(id, power), false};
         if (inside) pairs.emplace_back(id, inside);
-        return known_[key] = out;
+        return known_[key] = inside;
     }
     std::vector<std::pair<NodeId, NodeId>> pairs;
 
   private:
-    static constexpr std::size_t most_nodes = 2000;
+    static constexpr std::size_t most_nodes = 20'000;
     static constexpr int max_depth = 200, max_power = 16;
 
-    NodeId beside(NodeId id, int power) {
+    // … wherever s may be.
+    NodeId times(NodeId id, int power) {
+        if (const NodeId inside = moved(id, power)) return inside;
         for (int i = 0; i < power; ++i)
             id = factor_.divides ? graph_.div(id, factor_.number) : graph_.mul(id, factor_.number);
         return id;
@@ -108,11 +106,10 @@ class Inward {
         const ir::Node node = graph_[id];
         std::vector<NodeId> args(graph_.args(id).begin(), graph_.args(id).end());
         bool met = false;
-        for (std::size_t i : which) {
-            const Moved one = times(args[i], power);
-            args[i] = one.value, met |= one.met;
-        }
-        return met ? graph_.make(node.op, node.type, args, node.payload) : NodeId();
+        for (std::size_t i : which) met = bool(moved(args[i], power)) || met;
+        if (!met) return {};
+        for (std::size_t i : which) args[i] = times(args[i], power);
+        return graph_.make(node.op, node.type, args, node.payload);
     }
     NodeId with_args(NodeId id, int power, std::initializer_list<std::size_t> which) {
         return with_args(id, power, std::span(which.begin(), which.size()));
@@ -138,21 +135,30 @@ class Inward {
     // s^n a b as s^i a s^(n - i) b.
     NodeId product(NodeId id, int power) {
         const ir::Node node = graph_[id];
-        const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
-        Moved left = times(a, std::max(power / 2, 1)), right{b};
-        if (power > 1 || !left.met) right = times(b, power > 1 ? power - power / 2 : 1);
-        if (power == 1 && !left.met) left.value = a;
-        if (!left.met && !right.met) return {};
-        return graph_.make(node.op, node.type, std::array{left.value, right.value}, node.payload);
+        NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
+        if (power == 1) {
+            if (const NodeId left = moved(a, 1))
+                a = left;
+            else if (const NodeId right = moved(b, 1))
+                b = right;
+            else
+                return {};
+        } else {
+            const int first = power / 2, rest = power - first;
+            if (!moved(a, first) && !moved(b, rest)) return {};
+            a = times(a, first), b = times(b, rest);
+        }
+        return graph_.make(node.op, node.type, std::array{a, b}, node.payload);
     }
 
     // s a/b as (s a)/b, or as a/(b/s).
     NodeId quotient(NodeId id, int power) {
         if (const NodeId above = with_args(id, power, {0}); above || power > 1) return above;
-        Inward inverse(graph_, {factor_.number, !factor_.divides});
+        RescaledNodes known;
+        Inward inverse(graph_, {factor_.number, !factor_.divides}, known, work_);
         inverse.depth_ = depth_;
-        const Moved below = inverse.times(graph_.arg(id, 1), 1);
-        return below.met ? graph_.div(graph_.arg(id, 0), below.value) : NodeId();
+        const NodeId below = inverse.moved(graph_.arg(id, 1), 1);
+        return below ? graph_.div(graph_.arg(id, 0), below) : NodeId();
     }
 
     // b^c: c a constant, and power/c whole.
@@ -165,37 +171,36 @@ class Inward {
     // The smooth extremum of s x and s y within s k, written as it was (smooth.h).
     NodeId smooth(const Smooth &of) {
         if (of.divisor != of.k) return {};
-        const Moved x = times(of.x, 1), y = times(of.y, 1);
-        if (!x.met && !y.met) return {};
-        const NodeId k = times(of.k, 1).value, zero = graph_.number(0), one = graph_.number(1);
+        if (!moved(of.x, 1) && !moved(of.y, 1)) return {};
+        const NodeId x = times(of.x, 1), y = times(of.y, 1);
+        const NodeId k = times(of.k, 1), zero = graph_.number(0), one = graph_.number(1);
         if (!of.clipped) {
             const NodeId width = of.greater ? graph_.neg(k) : k;
-            const NodeId way =
-                graph_.div(graph_.mul(graph_.number(0.5), graph_.sub(y.value, x.value)), width);
+            const NodeId way = graph_.div(graph_.mul(graph_.number(0.5), graph_.sub(y, x)), width);
             const NodeId h =
                 graph_.make(Op::Clamp, {graph_.add(graph_.number(0.5), way), zero, one});
             const NodeId bulge = graph_.mul({graph_.mul(width, h), graph_.sub(one, h)});
-            return graph_.sub(graph_.make(Op::Mix, {y.value, x.value, h}), bulge);
+            return graph_.sub(graph_.make(Op::Mix, {y, x, h}), bulge);
         }
-        const NodeId way = graph_.make(Op::Abs, {graph_.sub(x.value, y.value)});
+        const NodeId way = graph_.make(Op::Abs, {graph_.sub(x, y)});
         const NodeId h = graph_.make(Op::Max, {graph_.sub(k, way), zero}),
                      square = graph_.mul(h, h);
         const NodeId bulge = of.cubic ? graph_.div({graph_.mul(square, h),
                                                     graph_.mul(graph_.number(6), graph_.mul(k, k))})
                                       : graph_.div({square, graph_.mul(graph_.number(4), k)});
-        const NodeId most = graph_.make(of.greater ? Op::Max : Op::Min, {x.value, y.value});
+        const NodeId most = graph_.make(of.greater ? Op::Max : Op::Min, {x, y});
         return of.greater ? graph_.add(most, bulge) : graph_.sub(most, bulge);
     }
 
     // The wave of s x with periods s m, and its step for the step of the other.
     NodeId waving(NodeId id, NodeId of, NodeId period, const HeldWaveParts *held) {
-        const Moved x = times(of, 1);
-        if (!x.met) return {};
-        const NodeId m = times(period, 1).value;
-        const NodeId round = graph_.make(Op::Round, {graph_.div(x.value, m)});
+        const NodeId x = moved(of, 1);
+        if (!x) return {};
+        const NodeId m = times(period, 1);
+        const NodeId round = graph_.make(Op::Round, {graph_.div(x, m)});
         const NodeId turns = held ? graph_.make(Op::Clamp, {round, held->lo, held->hi}) : round;
         if (const auto step = step_in(id, 0)) pairs.emplace_back(*step, round);
-        return graph_.sub(x.value, graph_.mul(m, turns));
+        return graph_.sub(x, graph_.mul(m, turns));
     }
     std::optional<NodeId> step_in(NodeId id, int depth) const {
         constexpr OpSet steps{Op::Round, Op::Mod, Op::Fract},
@@ -220,18 +225,24 @@ class Inward {
         return id;
     }
 
+    // A sum whose terms only make sense together is scaled as what it is.
+    NodeId sum(NodeId id, int power) {
+        const NodeId by_terms = with_all_args(id, power);
+        if (!by_terms && !step_in(id, 0)) return {};
+        const NodeId form = known_form(id, power);
+        return form != id ? form : by_terms;
+    }
+
     NodeId made(NodeId id, int power) {
-        constexpr OpSet by_all{Op::Add,   Op::Sub,     Op::Neg,   Op::Abs,
-                               Op::Min,   Op::Max,     Op::Clamp, Op::Make,
-                               Op::Splat, Op::Swizzle, Op::Union, Op::Intersection},
-            sums{Op::Add, Op::Sub}, products{Op::Mul, Op::Dot};
+        constexpr OpSet by_all{Op::Neg,  Op::Abs,   Op::Min,     Op::Max,   Op::Clamp,
+                               Op::Make, Op::Splat, Op::Swizzle, Op::Union, Op::Intersection},
+            products{Op::Mul, Op::Dot};
         const ir::Node node = graph_[id];
         if (power == 1) {
             if (const NodeId x = without_inverse(id)) return x;
             if (const NodeId x = by_shares(id)) return x;
         }
-        if (sums[node.op])
-            if (const NodeId form = known_form(id, power); form != id) return form;
+        if (node.op == Op::Add || node.op == Op::Sub) return sum(id, power);
         if (by_all[node.op]) return with_all_args(id, power);
         if (products[node.op]) return product(id, power);
         if (node.op == Op::Length) return power == 1 ? with_all_args(id, 1) : NodeId();
@@ -251,7 +262,8 @@ class Inward {
     Graph &graph_;
     Factor factor_;
     std::vector<NodeId> extremes_;
-    std::map<std::pair<NodeId, int>, Moved> known_;
+    RescaledNodes &known_;
+    Work &work_;
     int depth_ = 0;
 };
 
@@ -270,11 +282,12 @@ void gather(const Graph &graph, NodeId id, bool divides, std::vector<Factor> &ou
 
 } // namespace
 
-std::optional<Rescaled> rescaled(Graph &graph, Factor factor, NodeId expression) {
-    Inward inward(graph, factor);
-    const auto out = inward.times(expression, 1);
-    if (!out.met) return {};
-    return Rescaled{out.value, std::move(inward.pairs)};
+std::optional<Rescaled> rescaled(Graph &graph, Factor factor, NodeId expression,
+                                 RescaledNodes &known, Work &work) {
+    Inward inward(graph, factor, known, work);
+    const NodeId out = inward.moved(expression, 1);
+    if (!out) return {};
+    return Rescaled{out, std::move(inward.pairs)};
 }
 
 std::vector<Factor> factors_of(const Graph &graph, NodeId product) {

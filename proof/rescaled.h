@@ -3,7 +3,9 @@
 #pragma once
 
 #include "ir/graph.h"
+#include "proof/work.h"
 
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -24,7 +26,10 @@ struct Rescaled {
     NodeId value;
     std::vector<std::pair<NodeId, NodeId>> made; // each node, and the one that is made of it
 };
-std::optional<Rescaled> rescaled(ir::Graph &graph, Factor factor, NodeId expression);
+// What was found for one factor, by node and power of it, for other expressions that it is beside.
+using RescaledNodes = std::map<std::pair<NodeId, int>, NodeId>;
+std::optional<Rescaled> rescaled(ir::Graph &graph, Factor factor, NodeId expression,
+                                 RescaledNodes &known, Work &work);
 
 // What a node is times, or divided by: the factors of a product or quotient, numbers apart.
 std::vector<Factor> factors_of(const ir::Graph &graph, NodeId product);

@@ -10,7 +10,6 @@
 #include "proof/interpolation.h"
 #include "proof/linear_maps.h"
 #include "proof/means.h"
-#include "proof/rescaled.h"
 #include "proof/segments.h"
 #include "proof/smooth.h"
 
@@ -203,8 +202,11 @@ std::optional<NodeId> Flattener::without_factors(Scope &scope, NodeId id) {
         if (divides) factor.divides = !factor.divides;
         const Interval range = range_of(context, *context.ranges, factor.number, Cell{})[0];
         if (!(range.lo > 0) || !range.finite()) continue;
-        const auto moved = rescaled(graph, factor, value),
-                   rest = rescaled(graph, {factor.number, factor.divides == divides}, left);
+        RescaledNodes of_rest;
+        const Factor inverse{factor.number, factor.divides == divides};
+        const auto moved = rescaled(graph, factor, value, met[{factor.number, factor.divides}],
+                                    context.work),
+                   rest = rescaled(graph, inverse, left, of_rest, context.work);
         if (!moved || !rest) continue;
         for (const auto &[old, made] : moved->made) {
             if (cancelling.contains(old)) cancelling.insert(made);

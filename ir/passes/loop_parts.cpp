@@ -23,6 +23,7 @@ struct Apart {
 };
 
 constexpr std::size_t most_nodes = 2000; // of a next value whose calls are written out
+constexpr std::size_t most_variables = 16;
 
 // None where a component of the next value can not be computed by itself.
 std::optional<Apart> taken_apart(Graph &graph, NodeId node, std::size_t k) {
@@ -96,7 +97,8 @@ NodeId own_loop(Graph &graph, const Apart &from, const std::set<std::size_t> &ne
 
 NodeId loop_result(Graph &graph, NodeId loop, std::size_t k) {
     const NodeId whole = whole_result(graph, loop, k);
-    if (!is_vector(graph.type(whole))) return whole;
+    const std::size_t variables = graph.loop(LoopId{std::size_t{graph[loop].payload}}).vars.size();
+    if (!is_vector(graph.type(whole)) || variables > most_variables) return whole;
     const auto apart = taken_apart(graph, loop, k);
     if (!apart) return whole;
     std::vector<std::set<std::size_t>> needs;

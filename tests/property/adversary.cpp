@@ -381,12 +381,14 @@ class Adversary : public Chance {
     std::string sized() {
         const std::string size =
             of({"w", "w", "1 + 0.4 * sin(time)", "0.5 + fract(time)", "w * (1 + 0.3 * sin(time))",
-                "1 / w", "min(1, w)", "0.4 + 4 * fract(time) * (1 - fract(time))", "w - 0.35"});
+                "1 / w", "min(1, w)", "min(w, 1.2)", "max(w, 1.2)", "w - 0.35",
+                "0.4 + 4 * fract(time) * (1 - fract(time))"});
         const std::string q =
             of({"p / s", "p / s", "p * (1 / s)", "p / (2 * s)", "vec3(p.x, p.y / s, p.z)",
                 "p / s + 0.2", "abs(p / s)", "vec3(c * p.x - n * p.z, p.y, n * p.x + c * p.z) / s",
                 "s * p", "(p - w) / s", "p / (s * s)", "p / s - round(p / s)", "p.zxy / vec3(s)",
-                "(p / s + 1) % 2 - 1", "p / s - clamp(round(p / s), -1, 2)"});
+                "(p / s + 1) % 2 - 1", "p / vec3(w, 1.2, w)", "p * vec3(1.2, w, 1)",
+                "p / s - clamp(round(p / s), -1, 2)"});
         const std::string d = of(
             {"length(q) - 0.5", "length(max(abs(q) - 0.4, 0))", "sqrt(dot(q, q)) - 0.5",
              "max(abs(q.x), abs(q.y)) - 0.3", "smin(length(q) - 0.4, q.y, 0.2)",

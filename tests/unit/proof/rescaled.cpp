@@ -13,6 +13,12 @@ using namespace fathom::test;
 
 namespace {
 
+std::optional<proof::Rescaled> moved_in(Graph &graph, proof::Factor factor, NodeId expression) {
+    proof::RescaledNodes known;
+    proof::Work work;
+    return proof::rescaled(graph, factor, expression, known, work);
+}
+
 struct Sized {
     Scenery s;
     Graph &g = s.g;
@@ -107,7 +113,7 @@ TEST_CASE("a number and its inverse leave an expression of the same value") {
         for (const bool divides : {false, true}) {
             Sized z;
             const NodeId inner = measure(z, divides ? z.larger : z.smaller);
-            const auto found = proof::rescaled(z.g, {z.size, divides}, inner);
+            const auto found = moved_in(z.g, {z.size, divides}, inner);
             REQUIRE(found);
             for (const double by : {0.3, 1.0, 1.7})
                 for (const std::array<double, 3> at :
@@ -128,7 +134,7 @@ TEST_CASE("the least of several sizes meets each of them") {
         const NodeId t = g.time(), sizes = z.s.vec(z.size, t, g.number(1.2));
         const NodeId extreme = g.make(divides ? Op::Max : Op::Min, {z.size, t}),
                      inner = z.box(divides ? g.mul(z.s.p, sizes) : g.div(z.s.p, sizes));
-        const auto found = proof::rescaled(g, {extreme, divides}, inner);
+        const auto found = moved_in(g, {extreme, divides}, inner);
         REQUIRE(found);
         for (const double by : {0.3, 1.0, 1.7})
             for (const double time : {0.4, 1.1, 1.9}) {
@@ -144,10 +150,10 @@ TEST_CASE("the least of several sizes meets each of them") {
 
 TEST_CASE("what no inverse is in stays as it is") {
     Sized z;
-    CHECK_FALSE(proof::rescaled(z.g, {z.size, false}, z.box(z.s.p)));
-    CHECK_FALSE(proof::rescaled(z.g, {z.size, false}, z.box(z.larger)));
-    CHECK_FALSE(proof::rescaled(z.g, {z.size, true}, z.box(z.smaller)));
-    CHECK_FALSE(proof::rescaled(z.g, {z.size, false}, z.s.sin(z.g.component(z.smaller, 0))));
+    CHECK_FALSE(moved_in(z.g, {z.size, false}, z.box(z.s.p)));
+    CHECK_FALSE(moved_in(z.g, {z.size, false}, z.box(z.larger)));
+    CHECK_FALSE(moved_in(z.g, {z.size, true}, z.box(z.smaller)));
+    CHECK_FALSE(moved_in(z.g, {z.size, false}, z.s.sin(z.g.component(z.smaller, 0))));
 }
 
 TEST_CASE("the factors of a product are found, and numbers left aside") {
