@@ -1,4 +1,5 @@
-// fathom volume: true distances, or what a function gives, on a lattice, as an OpenVDB, NRRD or NumPy file.
+// fathom volume: true distances on a lattice, or what a function gives there, as an OpenVDB, NRRD or
+// NumPy file.
 #include "cli/interrupt.h"
 #include "cli/solid.h"
 

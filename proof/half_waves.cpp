@@ -157,6 +157,7 @@ struct Lattice {
 bool is_half_beside(const Lattice &a, const Lattice &b, int components) {
     if (a.m != b.m || a.at.base != b.at.base) return false;
     for (std::size_t i = 0; i < std::size_t(components); ++i) {
+        if (!(a.period[i] > 0)) return false;
         const double periods = (a.at.by[i] - b.at.by[i]) / a.period[i];
         if (!(std::fabs(std::fabs(periods - std::round(periods)) - 0.5) <= 1e-12)) return false;
     }
@@ -189,7 +190,7 @@ NodeId with_half_waves(Graph &graph, NodeId root) {
         const auto found = wave(graph, id);
         if (!found || lattices.size() >= max_lattices) continue;
         const auto period = numbers(graph, found->m);
-        if (!period || !((*period)[0] > 0)) continue;
+        if (!period) continue;
         lattices.push_back({id, found->x, found->m, *period, shifted(graph, found->x)});
     }
     for (const Lattice &a : lattices)

@@ -15,7 +15,8 @@ using ir::Op;
 namespace {
 
 constexpr std::size_t most_params = 4, most_moving = 2, most_nodes = 4000;
-constexpr int pieces = 8; // of a range
+constexpr double least_width = 1e-3; // of what moves: of one moment it is what rounding makes of it
+constexpr int pieces = 8;            // of a range
 constexpr int most_halvings = 3;
 constexpr double pays_from = 1.25;     // times the present bound, from where on a formula is
 constexpr double near_enough = 1.1;    // a line this near the bound in its middle is not halved
@@ -174,7 +175,7 @@ class ParamBounds {
         std::vector<Input> out;
         for (NodeId node : moving_with_time(graph_, written.root)) {
             const Interval range = range_of(context_, ranges_, node, Cell{})[0];
-            if (!range.finite() || !(range.lo < range.hi)) continue;
+            if (!range.finite() || !(range.width() > least_width)) continue;
             const NodeId variable = graph_.fresh_var(ir::Type::Float);
             out.push_back({node, ir::substitute(graph_, written.root, {{node, variable}}), Op::Var,
                            graph_[variable].payload, range, range.middle()});

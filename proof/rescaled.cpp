@@ -23,7 +23,7 @@ class Inward {
   public:
     Inward(Graph &graph, Factor factor, RescaledNodes &known, Work &work)
         : graph_(graph), factor_(factor), known_(known), work_(work) {
-        extremes_of(factor.divides ? Op::Max : Op::Min, factor.number);
+        extremes_of(factor.divides ? Op::Max : Op::Min, factor.number, 0);
     }
 
     // s^power times the expression, power >= 1, where s meets an inverse of itself; else none.
@@ -54,13 +54,13 @@ class Inward {
 
     // Of s = min(a, b, …), what it is the least of: s (x/a) = x min(s/a, 1). Of 1/max(a, b, …),
     // likewise, what the greatest is of.
-    void extremes_of(Op op, NodeId id) {
-        constexpr std::size_t most = 8;
-        if (graph_[id].op != op || extremes_.size() > most) {
-            if (id != factor_.number) extremes_.push_back(id);
+    void extremes_of(Op op, NodeId id, int depth) {
+        constexpr int most = 6; // of depths
+        if (graph_[id].op != op || depth > most) {
+            if (depth > 0) extremes_.push_back(id);
             return;
         }
-        for (int i = 0; i < 2; ++i) extremes_of(op, graph_.arg(id, i));
+        for (int i = 0; i < 2; ++i) extremes_of(op, graph_.arg(id, i), depth + 1);
     }
     bool is_extreme(NodeId id) const { return std::ranges::count(extremes_, id) > 0; }
     // s/a, or a/s, where that is at most 1; else s/a.
@@ -267,14 +267,15 @@ class Inward {
     int depth_ = 0;
 };
 
-void gather(const Graph &graph, NodeId id, bool divides, std::vector<Factor> &out) {
+void gather(const Graph &graph, NodeId id, bool divides, std::vector<Factor> &out, int depth) {
     constexpr std::size_t most = 8;
+    constexpr int max_depth = 16;
     const ir::Node node = graph[id];
-    if (out.size() >= most || node.op == Op::Const) return;
-    if (node.op == Op::Splat) return gather(graph, graph.arg(id, 0), divides, out);
+    if (out.size() >= most || node.op == Op::Const || depth > max_depth) return;
+    if (node.op == Op::Splat) return gather(graph, graph.arg(id, 0), divides, out, depth + 1);
     if (node.op == Op::Mul || node.op == Op::Div) {
-        gather(graph, graph.arg(id, 0), divides, out);
-        gather(graph, graph.arg(id, 1), node.op == Op::Div ? !divides : divides, out);
+        gather(graph, graph.arg(id, 0), divides, out, depth + 1);
+        gather(graph, graph.arg(id, 1), node.op == Op::Div ? !divides : divides, out, depth + 1);
     } else if (node.type == ir::Type::Float) {
         out.push_back({id, divides});
     }
@@ -292,7 +293,7 @@ std::optional<Rescaled> rescaled(Graph &graph, Factor factor, NodeId expression,
 
 std::vector<Factor> factors_of(const Graph &graph, NodeId product) {
     std::vector<Factor> out;
-    gather(graph, product, false, out);
+    gather(graph, product, false, out, 0);
     return out;
 }
 

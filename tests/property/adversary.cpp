@@ -429,7 +429,7 @@ class Adversary : public Chance {
              "g.x * g.y", "length(vec2(length(g) - 0.2, p.y)) - 0.1", "length(abs(g) - 0.2)",
              "min(dot(abs(g), r), 0.3)", "length(2 * g + p.y)", "cos(6 * g.x) * 0.1"});
         std::string text =
-            "let r = " + std::string(of({"vec2(1, 1.7320508)", "vec2(1, 1)", "vec2(0.8, 1.25)"})) +
+            "let r = " + std::string(of({"vec2(1, 1.7320508)", "vec2(1, 1)", "vec2(0.8, -1.25)"})) +
             "\n let h = r / 2\n " + pair + "\n let g = if " + nearer +
             " { a } else { b }\n 0.4 * (" + measure + ")";
         for (std::size_t at; (at = text.find('S')) != text.npos;) text.replace(at, 1, shift);

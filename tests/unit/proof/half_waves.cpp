@@ -16,10 +16,11 @@ namespace {
 struct Hexagons {
     Scenery s;
     Graph &g = s.g;
-    NodeId at = g.swizzle(s.p, std::array{0, 2}), period = vec2(1, 1.75), half = vec2(0.5, 0.875);
-    NodeId a = g.sub(g.make(Op::Mod, {at, period}), half), b;
+    NodeId at = g.swizzle(s.p, std::array{0, 2}), period, half, a, b;
 
-    explicit Hexagons(bool by_rounding, double shift = 1) {
+    explicit Hexagons(bool by_rounding, double shift = 1, double sign = 1)
+        : period(vec2(1, 1.75 * sign)), half(vec2(0.5, 0.875 * sign)),
+          a(g.sub(g.make(Op::Mod, {at, period}), half)) {
         // x % m - m/2 is the wave of x - m/2
         const double whole = by_rounding ? shift + 1 : shift;
         const NodeId moved = g.sub(at, g.mul(half, g.number(whole)));
@@ -89,6 +90,9 @@ TEST_CASE("lattices stay two where a sign is seen, or where they are not half a 
             CAPTURE(by_rounding, &measure - not_even.data());
             CHECK(proof::with_half_waves(h.g, field) == field);
         }
+        Hexagons negative(by_rounding, 1, -1); // |w| is no more than half of the size of a period
+        const NodeId of_negative = even[0](negative, negative.nearer());
+        CHECK(proof::with_half_waves(negative.g, of_negative) == of_negative);
         for (const double shift : {0.9, 1.001, 2.0, 0.0}) {
             Hexagons h(by_rounding, shift);
             const NodeId field = even[0](h, h.nearer());
