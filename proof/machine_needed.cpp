@@ -64,6 +64,7 @@ void Machine::need_args(const Instruction &in, std::vector<bool> &wanted) const 
     for (const Slot s : in.turned) wanted[s] = true;
     if (in.turning) wanted[in.turning->vector] = wanted[in.turning->angle] = true;
     if (in.around) wanted[in.around->vector] = true;
+    if (in.along) wanted[in.along->vector] = wanted[in.along->factor] = true;
     if (in.between) {
         wanted[in.between->vector] = true;
         for (const Slot s : in.between->corners) wanted[s] = true;

@@ -40,6 +40,7 @@ void Machine::step(const Instruction &instruction) {
     if (instruction.mean) hold_mean(instruction);
     if (instruction.around) hold_around(instruction);
     if (instruction.between) hold_between(instruction);
+    if (instruction.along) hold_along(instruction);
     if (reads_values_) step.read();
     if (!bend_.empty()) bend_[instruction.out] = step.bend();
 }

@@ -86,6 +86,13 @@ struct Instruction {
         double by = 1;
     };
     std::optional<AroundAxis> around;
+    // Of a product that is along a vector (radial.h): it is no steeper than the factor's size times
+    // the vector, or than the vector by that size.
+    struct Along {
+        Slot vector = 0, factor = 0;
+        bool divides = false;
+    };
+    std::optional<Along> along;
     // Of a scalar between values at the corners of a cell (interpolation.h): it is no steeper than
     // `by` times the width of their range times `vector`.
     struct Between {

@@ -10,6 +10,7 @@
 #include "proof/interpolation.h"
 #include "proof/linear_maps.h"
 #include "proof/means.h"
+#include "proof/radial.h"
 #include "proof/segments.h"
 #include "proof/smooth.h"
 
@@ -186,6 +187,11 @@ void Flattener::find_mean(Scope &scope, NodeId id, Instruction &out) {
                     mean->beyond};
 }
 
+void Flattener::find_radial(Scope &scope, NodeId id, Instruction &out) {
+    if (const auto found = radial(graph, id))
+        out.along = {slot(scope, found->vector), slot(scope, found->factor), found->divides};
+}
+
 // s f(p/s) as f(p) would be, of a larger solid.
 std::optional<NodeId> Flattener::without_factors(Scope &scope, NodeId id) {
     if (!context.ranges) return {};
@@ -231,6 +237,7 @@ Slot Flattener::product(Scope &scope, NodeId id, Instruction out) {
     if (out.type != ir::Type::Float && !ir::is_vector(out.type)) return emit(scope, std::move(out));
     if (const auto around = around_axis(context, id); around && cancelling.contains(around->angle))
         out.around = {slot(scope, around->vector), around->by};
+    find_radial(scope, id, out);
     return emit_by_pieces(scope, id, std::move(out), {id});
 }
 
@@ -243,6 +250,7 @@ Slot Flattener::quotient(Scope &scope, NodeId id, Instruction out) {
         return emit(scope, out, Form::Plain, {a});
     }
     if (const auto larger = without_factors(scope, id)) return slot(scope, *larger);
+    find_radial(scope, id, out);
     return emit_plain(scope, id, std::move(out));
 }
 

@@ -1,0 +1,109 @@
+// What is known of an instruction's slope beside what its op's rule says: forms that were seen on the
+// expressions. Each holds together with the rule's own bound.
+#include "proof/instruction_rules.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::proof {
+
+using ir::rounding::infinity;
+using ir::rounding::times;
+using ir::rounding::up;
+
+// What a value's gradient is, as a mean of two others (means.h), beside what its own rule says.
+void Machine::hold_mean(const Instruction &instruction) {
+    const Slot out = instruction.out;
+    const auto [a, b, by_a, by_b, beyond] = *instruction.mean;
+    const std::uint32_t at_a = tape_.first[a], at_b = tape_.first[b];
+    if (norm_[out] == infinity || norm_[a] == infinity || norm_[b] == infinity) return;
+    if (odd_[at_a] || odd_[at_b]) return;
+    if (value_[at_a].magnitude() > mean_reach || value_[at_b].magnitude() > mean_reach) return;
+    for (std::size_t j = 0; j < 3; ++j) {
+        const Interval of_a = Interval(by_a) * grad_[at_a][j],
+                       of_b = Interval(by_b) * grad_[at_b][j];
+        const Interval way = Interval(-beyond, beyond) * Interval((of_a - of_b).magnitude());
+        Interval &own = grad_[tape_.first[out]][j];
+        own = meet(own, hull(of_a, of_b) + (beyond > 0 ? way : Interval(0.0)));
+    }
+    const double most =
+        std::max(times(std::fabs(by_a), norm_[a]), times(std::fabs(by_b), norm_[b]));
+    norm_[out] = std::min(norm_[out], up(times(most, 1 + 2 * beyond + 1e-9), 4));
+}
+
+// A vector that turns with an angle: M J_v + M' v grad a (linear_maps.h).
+void Machine::hold_turning(const Instruction &instruction) {
+    using Way = Instruction::Turning::Way;
+    const auto &[vector, angle, norm, by, moving, way] = *instruction.turning;
+    const Slot out = instruction.out;
+    if (norm_[out] == infinity || odd_[tape_.first[angle]]) return;
+    Interval sum;
+    unsigned taken = 0; // of the point's coordinates
+    bool is_point = distances_.has_value();
+    for (std::uint32_t c = 0; c < tape_.size[vector]; ++c) {
+        const std::uint32_t at = tape_.first[vector] + c;
+        if (odd_[at]) return;
+        if (!(moving >> c & 1)) continue;
+        sum += square(value_[at]);
+        is_point = is_point && coordinate_[at] != 0;
+        if (is_point) taken |= 1u << (coordinate_[at] - 1);
+    }
+    const double arm = length_of(is_point ? taken : 0, sqrt(sum)).hi;
+    const double turns = up(times(times(by, norm_[angle]), arm), 8),
+                 moves = up(times(norm, norm_[vector]), 4);
+    double most = moves + turns;
+    if (way == Way::Apart) most = std::hypot(moves, turns);
+    if (way == Way::Shear) most = (turns + std::hypot(turns, 2 * moves)) / 2;
+    hold_norm(out, up(most, 8));
+}
+
+// A bound of the norm beside the rule's own.
+void Machine::hold_norm(Slot s, double most) {
+    if (!(most < norm_[s])) return;
+    norm_[s] = most;
+    for (std::uint32_t i = tape_.first[s]; i < tape_.first[s] + tape_.size[s]; ++i)
+        for (Interval &own : grad_[i]) own = meet(own, Interval(-most, most));
+}
+
+// A product about an axis on which its angle is singular, and it is not (around.h).
+void Machine::hold_around(const Instruction &instruction) {
+    const Slot out = instruction.out, vector = instruction.around->vector;
+    const std::uint32_t part = tape_.first[vector];
+    const double most = up(times(instruction.around->by, norm_[vector]), 4);
+    if (!(most < norm_[out]) || trouble_[out] == Trouble::Overflow) return;
+    if ((tape_.near && !near_) || odd_[part] || odd_[part + 1]) return;
+    trouble_[out] = Trouble::None;
+    cause_[out] = NodeId();
+    hold_norm(out, most);
+}
+
+// Between values at corners that stand still, wherever they do not jump (interpolation.h).
+void Machine::hold_between(const Instruction &instruction) {
+    const Slot out = instruction.out, vector = instruction.between->vector;
+    const std::uint32_t at = tape_.first[out];
+    if (norm_[out] == infinity || odd_[at]) return;
+    for (std::uint32_t i = 0; i < tape_.size[vector]; ++i)
+        if (odd_[tape_.first[vector] + i]) return;
+    Interval all = value(instruction.between->corners[0], 0);
+    for (const Slot corner : instruction.between->corners) {
+        if (norm_[corner] != 0 || odd_[tape_.first[corner]]) return;
+        all = hull(all, value(corner, 0));
+    }
+    value_[at] = meet(value_[at], all);
+    const double slope = times(instruction.between->by, norm_[vector]);
+    hold_norm(out, up(times(slope, (Interval(all.hi) - Interval(all.lo)).hi), 4));
+}
+
+// A vector made longer or shorter by its length (radial.h).
+void Machine::hold_along(const Instruction &instruction) {
+    const auto [vector, factor, divides] = *instruction.along;
+    const Slot out = instruction.out;
+    if (norm_[out] == infinity) return;
+    for (std::uint32_t i = 0; i < tape_.size[vector]; ++i)
+        if (odd_[tape_.first[vector] + i]) return;
+    const Interval size = value(factor, 0);
+    const double by = divides ? up(1 / size.mignitude(), 4) : size.magnitude();
+    hold_norm(out, up(times(by, norm_[vector]), 4));
+}
+
+} // namespace fathom::proof
