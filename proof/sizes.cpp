@@ -13,6 +13,8 @@ using ir::ShapeId;
 using ir::ShapeKind;
 
 constexpr double reach = longest * 1.001; // boxes are rounded outward
+constexpr double useless =
+    1e6; // a bound with which a step is less than single precision tells apart
 
 static std::string short_text(double x) { return fmt::format("{:.3g}", x); } // also of 1e-20
 
@@ -50,14 +52,23 @@ void Prover::check_size(ShapeId id, Derived &k) {
     if (steep)
         wrong = name + " has a bound of " + short_text(k.fact.lipschitz_sup) +
                 ", and a bound is at most " + short_text(longest);
+    const bool leaf = shape.kind == ShapeKind::Leaf;
+    if (wrong.empty() && leaf && k.fact.status == ir::ProofStatus::Proved &&
+        k.fact.lipschitz_sup > useless)
+        if (Diagnostic *d = report(id, Code::SteepField,
+                                   name + " has a bound of " + short_text(k.fact.lipschitz_sup) +
+                                       ": where it is that steep no ray gets on"))
+            d->note("a step is the field's value divided by the bound")
+                .help("choose a smaller region, fewer turns of a loop or smaller numbers, or march "
+                      "by an estimate, `estimate: 2`, which is no proof");
     if (wrong.empty()) return;
     Diagnostic *d = report(id, Code::NumberRange, wrong);
     if (d && steep)
         d->note("no step could be divided by that")
             .help(std::string("choose a smaller region, fewer turns of a loop or smaller numbers") +
-                  (shape.kind == ShapeKind::Leaf ? ", or state a bound that you know with "
-                                                   "`lipschitz:`, which is then tested"
-                                                 : ""));
+                  (leaf ? ", or state a bound that you know with "
+                          "`lipschitz:`, which is then tested"
+                        : ""));
     else if (d)
         d->note("fields are computed in single precision, which has to hold the squares of "
                 "lengths")
