@@ -199,17 +199,23 @@ class Inward {
         const NodeId m = times(period, 1);
         const NodeId round = graph_.make(Op::Round, {graph_.div(x, m)});
         const NodeId turns = held ? graph_.make(Op::Clamp, {round, held->lo, held->hi}) : round;
-        if (const auto step = step_in(id, 0)) pairs.emplace_back(*step, round);
+        if (const auto step = step_of(id)) pairs.emplace_back(*step, round);
         return graph_.sub(x, graph_.mul(m, turns));
     }
-    std::optional<NodeId> step_in(NodeId id, int depth) const {
-        constexpr OpSet steps{Op::Round, Op::Mod, Op::Fract},
-            through{Op::Sub, Op::Add, Op::Mul, Op::Clamp};
-        const ir::Node node = graph_[id];
-        if (steps[node.op]) return id;
-        if (depth > 3 || !through[node.op]) return {};
+    // A wave's own step, and none that its x is made with: what rounds in the second term, or the
+    // remainder that is a term.
+    std::optional<NodeId> step_of(NodeId sum) const {
+        if (const auto round = rounding_in(graph_.arg(sum, 1), 0)) return round;
+        for (NodeId term : graph_.args(sum))
+            if (graph_[term].op == Op::Mod || graph_[term].op == Op::Fract) return term;
+        return {};
+    }
+    std::optional<NodeId> rounding_in(NodeId id, int depth) const {
+        constexpr OpSet through{Op::Mul, Op::Clamp};
+        if (graph_[id].op == Op::Round) return id;
+        if (depth > 3 || !through[graph_[id].op]) return {};
         for (NodeId arg : graph_.args(id))
-            if (const auto found = step_in(arg, depth + 1)) return found;
+            if (const auto found = rounding_in(arg, depth + 1)) return found;
         return {};
     }
 
@@ -228,7 +234,7 @@ class Inward {
     // A sum whose terms only make sense together is scaled as what it is.
     NodeId sum(NodeId id, int power) {
         const NodeId by_terms = with_all_args(id, power);
-        if (!by_terms && !step_in(id, 0)) return {};
+        if (!by_terms && !step_of(id)) return {};
         const NodeId form = known_form(id, power);
         return form != id ? form : by_terms;
     }
