@@ -3,6 +3,7 @@
 #include "render-gl/passes.h"
 #include "render-gl/pruning.h"
 #include "render-gl/shaders.h"
+#include "render-gl/subroutines.h"
 
 #include <epoxy/gl.h>
 
@@ -70,12 +71,16 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
     result.budget_ = output.budget;
     const bool software = is_software(), passes = output.text.find(kept_name) != std::string::npos;
     result.most_turns_ = turns_within(software ? output.turns.all : output.turns.written_out);
-    if (software && passes) result.keeping_text_ = output.text;
+    std::string text = output.text;
+    if (software && passes) {
+        result.keeping_text_ = text;
+        text = text_that_begins(text);
+    }
+    if (wants_subroutines()) text = with_subroutines(text);
     if (auto error = link(result.program_,
-                          {{GL_VERTEX_SHADER, triangle_for(output.text)},
-                           {GL_FRAGMENT_SHADER,
-                            software && passes ? text_that_begins(output.text) : output.text}}))
+                          {{GL_VERTEX_SHADER, triangle_for(text)}, {GL_FRAGMENT_SHADER, text}}))
         return *error;
+    result.subroutines_ = subroutines_of(result.program_);
     if (auto error = result.tables_.fill(output.tables)) return *error;
     for (const glsl::Sampler &sampler : output.images) {
         const ir::ImageData &image = scene.images[sampler.index];
@@ -152,6 +157,9 @@ void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) 
     if (pruning_) pruning_->prepare(params, in.time);
     const unsigned program = in.pass.keeps && keeping_ ? keeping_ : program_;
     glUseProgram(program);
+    if (!subroutines_.empty())
+        glUniformSubroutinesuiv(GL_FRAGMENT_SHADER, static_cast<GLsizei>(subroutines_.size()),
+                                subroutines_.data());
     const auto location = [&](const char *name) { return glGetUniformLocation(program, name); };
     const auto vector = [&](const char *name, const glm::dvec3 &v) {
         glUniform3f(location(name), static_cast<float>(v[0]), static_cast<float>(v[1]),
@@ -278,6 +286,7 @@ Program &Program::operator=(Program &&other) noexcept {
     std::swap(marks_, other.marks_);
     std::swap(keeping_text_, other.keeping_text_);
     std::swap(keeping_, other.keeping_);
+    std::swap(subroutines_, other.subroutines_);
     std::swap(budget_, other.budget_);
     std::swap(most_turns_, other.most_turns_);
     std::swap(first_kept_unit_, other.first_kept_unit_);

@@ -95,6 +95,7 @@ class Program {
     // made of the text when it is first wanted. No text: `program_` does both.
     std::string keeping_text_;
     mutable unsigned keeping_ = 0;
+    std::vector<unsigned> subroutines_; // of `program_` (subroutines.h)
     int budget_ = 0, most_turns_ = 0, first_kept_unit_ = 0;
     TableData tables_;
     std::unique_ptr<Pruning> pruning_; // where the text runs over lists by cell

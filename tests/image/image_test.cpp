@@ -4,9 +4,12 @@
 // side. So a pixel agrees when each of its channels lies within 2/255 of the range that the other
 // picture has in the 3 x 3 pixels around.
 #include "backend-cpu/trace/march.h"
+#include "backend-glsl/emit.h"
 #include "driver/compile.h"
 #include "render-gl/context.h"
+#include "render-gl/pruning.h"
 #include "render-gl/render.h"
+#include "render-gl/subroutines.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -149,6 +152,48 @@ TEST_CASE("rows stand on an endless ground and shade it by GL as by the CPU") {
         const cpu::Picture by_cpu =
             cpu::render(cpu::prepare(made.scene, view, width, height, 0), {});
         CHECK(disagreeing(by_gl->rgba, by_cpu.rgba) < width * height / 400);
+    }
+}
+
+// As NVIDIA's compiler gets them. By one field, by two, with safe radii, and beyond cells of rows.
+TEST_CASE("fields that are subroutines draw the same picture to the bit") {
+    auto context = gl::Context::make();
+    REQUIRE(std::holds_alternative<gl::Context>(context));
+    const fs::path examples = fs::path(FATHOM_SOURCE_DIR) / "examples";
+    const std::pair<const char *, int> scenes[] = {
+        {"01_sphere.sdf", 1}, {"well.sdf", 2}, {"displacement.sdf", 3}, {"old_tree.sdf", 2}};
+    for (const auto &[name, fields] : scenes) {
+        CAPTURE(name);
+        driver::CompileOptions with_cells;
+        with_cells.cells = driver::cells_of_pictures;
+        const driver::Compilation made = driver::compile_file(examples / name, with_cells);
+        REQUIRE(made.good());
+        Diagnostics diagnostics;
+        glsl::Output output = glsl::emit(made.scene,
+                                         {.target = glsl::Target::Glsl330,
+                                          .buffers = true,
+                                          .pruning = gl::can_prune(),
+                                          .passes = true},
+                                         diagnostics);
+        const auto plain = gl::Program::build(output, made.scene);
+        output.text = gl::with_subroutines(output.text);
+        const auto called = gl::Program::build(output, made.scene);
+        REQUIRE(std::holds_alternative<gl::Program>(plain));
+        REQUIRE(std::holds_alternative<gl::Program>(called));
+        CHECK(gl::subroutines_of(std::get<gl::Program>(plain).name()).empty() ==
+              !gl::wants_subroutines());
+        CHECK(gl::subroutines_of(std::get<gl::Program>(called).name()).size() ==
+              static_cast<std::size_t>(fields));
+        gl::Request request;
+        request.width = width;
+        request.height = height;
+        for (const gl::Mode mode : {gl::Mode::Numbers, gl::Mode::Linear}) {
+            const auto a = gl::draw(std::get<gl::Program>(plain), made.scene, request, mode),
+                       b = gl::draw(std::get<gl::Program>(called), made.scene, request, mode);
+            REQUIRE(a);
+            REQUIRE(b);
+            CHECK(a->rgba == b->rgba);
+        }
     }
 }
 
