@@ -47,7 +47,8 @@ struct MarcherOptions {
     int lights = 0;
     int max_steps = 256; // a ray, of the eye or of a light, where there are no passes
     double epsilon = 5e-4;
-    double far = 0; // 0: by the rule
+    double far = 0;      // 0: by the rule
+    double estimate = 0; // Frame::estimate
     double radius = 1;
     std::string center, lo, hi; // GLSL text
     std::string zero;           // an int 0 that the compiler cannot know to be 0

@@ -38,6 +38,8 @@
 //       between them. Go back to the first sphere's edge: t += before - stride, stride = before,
 //       aims = false, and go on with the next iteration
 //     if d <= 0: a hit between t - stride and t (REFINED)
+//     d < before and estimate*d < tolerance(t), for the comes-th time in a row: a hit at
+//       t - tolerance(t)/2, from where a gradient does not cross the surface (ESTIMATES)
 //     if d < slack(t)/4 and touches = 0: look BESIDE; by what is there touches = -1 (it grazes a
 //       solid), 1 (it touches a sheet) or 0 (the surface is farther than d says)
 //     else if d < slack(t)/4 and touches > 0: touches += 1; beyond max_touches undecided at t
@@ -131,7 +133,7 @@
 //   margin = shadow_bias*tolerance(t):
 //     the budget is spent: undecided; it counts as what it is so far
 //     d = f(q + s*l)
-//     if d <= 0: all dark, done
+//     if d <= 0, or estimate*d < dark*angle*s (ESTIMATES): all dark, done
 //     edge = shadow*angle*s: what is farther changes nothing
 //     if s is a mark, d < edge and s <= quiet: closed(s); where that is below 1/256 all dark, done.
 //       quiet = s - calm*(near - edge): what is so much farther than the edge is not looked at again
@@ -144,6 +146,12 @@
 //   the slope there. So a penumbra depends on the solid alone: another bound makes other steps, but
 //   the same marks, and those that it passes over are not near enough.
 //   shadow = min(shadow, 1); result: shadow^2*(3 - 2*shadow)
+//
+// ESTIMATES, in scenes where some shape's bound is an estimate (`Frame::estimate`, the greatest):
+// distances to fractals are such, and hardly anywhere change their sign. So a ray has hit where
+// `comes` samples in a row are within its tolerance, each nearer than the one before, which a ray that
+// passes an edge has seldom; and a light is covered by what is much nearer to the way to it than
+// the light is wide. In all other scenes the sign alone decides.
 //
 // UNDECIDED: shaded where the ray came to, as what it is nearest to.
 // MISS: color = background_function(dir); without one `background`.
@@ -171,12 +179,14 @@ inline constexpr float occlusion_reach = 0.075f; // of half the height that is s
 inline constexpr float nearly = 0.98f;
 inline constexpr int penumbra_turns = 7;
 inline constexpr float calm = 0.25f;
+inline constexpr float dark = 1.0f / 64;   // of what the light covers at s
 inline constexpr float shadow_arm = 0.35f; // of the field's value beside a shadow ray
 inline constexpr float marks = 0.5f, closed_from = 1.0625f; // of what the light covers at s
 inline constexpr float jump = 2, graze = 1.0f / 16;         // tolerances
 inline constexpr int refinements = 12;
 inline constexpr float refined = 1.0f / 2048; // of a tolerance
 inline constexpr int max_touches = 8;
+inline constexpr int comes = 3;
 inline constexpr int many_steps = 256; // red in a picture of steps
 inline constexpr int budget = 65536;   // evaluations a ray, where the scene does not say
 inline constexpr float shadow_bias = 4;

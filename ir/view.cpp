@@ -228,6 +228,9 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
         frame.hi = vec_of(all.hi) + margin;
     }
     frame.unit_slope = scene.unit_slope;
+    for (const ShapeFact &fact : scene.facts)
+        if (fact.status == ProofStatus::Estimated)
+            frame.estimate = std::max({frame.estimate, 1.0, fact.lipschitz_sup});
     return frame;
 }
 

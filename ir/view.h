@@ -61,6 +61,7 @@ struct Frame {
                         // larger than the bounds)
     glm::dvec3 lo{}, hi{};
     bool unit_slope = false; // Scene::unit_slope
+    double estimate = 0;     // the greatest bound that is an estimate, at least 1; 0: there is none
 };
 Frame frame_of(const Scene &scene, const View &view, int height);
 

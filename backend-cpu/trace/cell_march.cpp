@@ -73,6 +73,7 @@ class Marcher {
         case Verdict::Touches:
             memory_.touching.push_back({i, walk.t, walk.d, slope_along(walk)});
             return false; // until settle()
+        case Verdict::Near: landings_[i] = beside(walk, lengths_); return false;
         case Verdict::Undecided: break;
         }
         landings_[i] = {walk.t, walk.steps, RayEnd::Undecided};

@@ -14,7 +14,7 @@ Lengths::Lengths(const Stage &stage)
       far(static_cast<float>(stage.frame.far)),
       base(static_cast<float>(stage.frame.tolerance_base)),
       slope(static_cast<float>(stage.frame.tolerance_slope)), fades(!stage.frame.boxed),
-      orthographic(stage.view.orthographic) {}
+      orthographic(stage.view.orthographic), estimate(static_cast<float>(stage.frame.estimate)) {}
 
 float Lengths::arm(float t) const {
     return shading::arm * tolerance(t) + shading::normal_slack * slack;
@@ -229,6 +229,7 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
         case Verdict::Touches:
             touching.push_back({i, walk.t, walk.d, slope_along(walk)});
             return false;
+        case Verdict::Near: landings[i] = beside(walk, lengths); return true;
         case Verdict::Undecided: break;
         }
         landings[i] = {walk.t, walk.steps, RayEnd::Undecided};

@@ -14,6 +14,7 @@ struct Walk {
     float span = 0, reached = 0; // how far d reaches, and `before`; where that is more than they
     int steps = 0;
     int touches = 0;   // samples in a row as near as slack/4; below 0: of a solid that it grazes
+    int comes = 0;     // samples in a row within an estimate's tolerance, each nearer than the last
     bool aims = false; // the last step was to change the sign
 };
 
@@ -30,12 +31,16 @@ inline bool apart(const Walk &walk) {
 }
 
 // What a sample says of its ray. Touches: first it has to be known what lies beside it.
-enum class Verdict : std::uint8_t { GoOn, GoBack, Crossed, Touches, Undecided };
+enum class Verdict : std::uint8_t { GoOn, GoBack, Crossed, Near, Touches, Undecided };
 inline Verdict judge(Walk &walk, const Lengths &lengths) {
     if (std::isnan(walk.d)) return Verdict::Undecided;
     if (walk.d <= 0 && walk.aims) return Verdict::Crossed;
     if (apart(walk)) return Verdict::GoBack;
     if (walk.d <= 0) return Verdict::Crossed;
+    const bool comes = lengths.estimate > 0 && walk.d < walk.before &&
+                       lengths.estimate * walk.d < lengths.tolerance(walk.t);
+    walk.comes = comes ? walk.comes + 1 : 0;
+    if (walk.comes == ir::shading::comes) return Verdict::Near;
     if (walk.d < 0.25f * lengths.slack_at(walk.t)) {
         if (walk.touches == 0) return Verdict::Touches;
         if (walk.touches > 0 && ++walk.touches > ir::shading::max_touches)
@@ -45,6 +50,10 @@ inline Verdict judge(Walk &walk, const Lengths &lengths) {
         walk.touches = 0;
     }
     return Verdict::GoOn;
+}
+// Where a ray that has come near lands: so far from the surface that a gradient does not cross it.
+inline Landing beside(const Walk &walk, const Lengths &lengths) {
+    return {walk.t - 0.5f * lengths.tolerance(walk.t), walk.steps, RayEnd::Hit};
 }
 inline float slope_along(const Walk &walk) {
     return walk.stride > 0 ? (walk.before - walk.d) / walk.stride : 0;

@@ -75,6 +75,7 @@ struct Lengths {
     float slack, pixel, far, base, slope;
     bool fades; // what lies far off, as rays have no box
     bool orthographic;
+    float estimate; // Frame::estimate
     explicit Lengths(const Stage &stage);
     float tolerance(float t) const { return base + slope * t; }
     float arm(float t) const;

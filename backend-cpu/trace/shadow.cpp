@@ -69,7 +69,9 @@ class Shadows {
         for (std::size_t k = 0; k < active.size(); ++k) {
             const std::size_t i = active[k];
             const State &state = states_[i];
-            const float d = worker_.values[k];
+            float d = worker_.values[k];
+            if (lengths_.estimate > 0 && lengths_.estimate * d < shading::dark * angle_ * state.s)
+                d = 0;
             next_[k] = std::max(d, 0.25f * lengths_.slack_at(state.s));
             if (d <= 0 || (state.mark && !is_bound(worker_, k) &&
                            d < state.shadow * angle_ * state.s && state.s <= state.quiet))

@@ -12,7 +12,7 @@ $if PASSES
 
 // A draw takes at most fathom_turns steps a ray. What a ray that goes on needs is kept, and given back to the next draw:
 //   0  the ray from the eye: t, before, stride, reached; one from a light: t of the hit, s, stride, shadow
-//   1  of that from a light: lo, hi, quiet
+//   1  of that from a light: at, quiet; of one from the eye to an estimate: comes
 //   2  the colour without that light
 //   3  the steps, the touches + 1 (+ 16 where it aims) or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
 //      eye's ray is undecided, and 2 where one from a light is
@@ -92,6 +92,9 @@ $if HAS_SAFE_RADIUS
     float reached = 0.0;
 $end
     int steps = 0;
+$if ESTIMATED
+    int comes = 0; // samples in a row within the tolerance, each nearer than the one before
+$end
 $if PASSES
     if (fathom_resumed) {
         vec4 kept = fathom_kept(fathom_kept_0);
@@ -109,6 +112,9 @@ $if PASSES
         stride = kept.z;
 $if HAS_SAFE_RADIUS
         reached = kept.w;
+$end
+$if ESTIMATED
+        comes = int(fathom_kept(fathom_kept_1).x);
 $end
         aims = more.y > 15.0;
         touches = int(more.y) - (aims ? 17 : 1);
@@ -187,6 +193,10 @@ $end
                 continue;
             }
             found = !(d >= 0.25 * fathom_slack_at(t)) || touches != 0;
+$if ESTIMATED
+            comes = d < min(before, $SHARE * tolerance) ? comes + 1 : 0;
+            found = found || comes == $COMES;
+$end
             if (found) break;
             float ahead = d;
 $include march_ahead
@@ -197,6 +207,13 @@ $include march_ahead
             fathom_end = 2;
             break;
         }
+$if ESTIMATED
+        if (phase == 0 && d > 0.0 && comes == $COMES) {
+            t -= 0.5 * tolerance;
+            fathom_end = 1;
+            break;
+        }
+$end
         bool touch = d < 0.25 * fathom_slack_at(t);
         bool on = phase == 0 && d > 0.0 && touches != 0;
         if (on) {
@@ -306,6 +323,9 @@ $if HAS_SAFE_RADIUS
         fathom_keep_0 = vec4(t, before, stride, reached);
 $else
         fathom_keep_0 = vec4(t, before, stride, 0.0);
+$end
+$if ESTIMATED
+        fathom_keep_1 = vec4(float(comes), 0.0, 0.0, 0.0);
 $end
         fathom_keep_3 = vec4(float(steps), float(touches + (aims ? 17 : 1)), -1.0, 0.0);
     }

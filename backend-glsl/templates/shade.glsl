@@ -75,6 +75,9 @@ $if CACHED
 $end
             if (!ahead) break;
             if (!(f > 0.0)) return 0.0;
+$if ESTIMATED
+            if (f < $DARK * angle * s) return 0.0;
+$end
             ++turn;
             next = max(f, 0.25 * fathom_slack_at(s));
             if (mark && s <= quiet && f < shadow * angle * s) {

@@ -155,6 +155,42 @@ TEST_CASE("rows stand on an endless ground and shade it by GL as by the CPU") {
     }
 }
 
+// As estimates of fractals do. By a bound that is assumed each ray would stay undecided.
+TEST_CASE("an estimate that never changes its sign is hit, and looks as the solid does") {
+    auto context = gl::Context::make();
+    REQUIRE(std::holds_alternative<gl::Context>(context));
+    gl::Request request;
+    request.width = width;
+    request.height = height;
+    const auto drawn = [&](const std::string &solid) {
+        CAPTURE(solid);
+        const driver::Compilation made =
+            driver::compile_text("estimate.sdf",
+                                 solid + "\nbox(0.5).translate([1.2, 0, 0.6])\nplane(Y, -1)\n"
+                                         "camera(at: [2, 1, 4], fov: 40deg)\n",
+                                 "", {});
+        REQUIRE(made.good());
+        Diagnostics diagnostics;
+        const std::optional<Picture> by_gl = gl::render(made.scene, request, diagnostics);
+        REQUIRE(by_gl);
+        CHECK(diagnostics.warnings() == 0); // of undecided rays
+        const ir::View view = ir::view_of(made.scene, 0, static_cast<double>(width) / height);
+        const cpu::Picture by_cpu =
+            cpu::render(cpu::prepare(made.scene, view, width, height, 0), {});
+        CHECK(by_cpu.work.undecided == 0);
+        CHECK(by_cpu.work.undecided_shadows == 0);
+        CHECK(disagreeing(by_gl->rgba, by_cpu.rgba) < width * height / 1000);
+        return by_cpu.rgba;
+    };
+    const auto ball = drawn("sphere(0.8)");
+    for (const char *estimate : {"1", "4"}) {
+        const auto estimated = drawn("implicit(p => max(length(p) - 0.8, 1e-7), within: ball(0.8), "
+                                     "estimate: " +
+                                     std::string(estimate) + ")");
+        CHECK(disagreeing(estimated, ball) < width * height / 200);
+    }
+}
+
 // As NVIDIA's compiler gets them. By one field, by two, with safe radii, and beyond cells of rows.
 TEST_CASE("fields that are subroutines draw the same picture to the bit") {
     auto context = gl::Context::make();

@@ -17,11 +17,11 @@ using glsl::Values;
 namespace {
 
 const std::vector<std::string> flags{
-    "BOXED",  "UNIT_SLOPE",   "SHADED_APART",  "PASSES",      "COUNTED",    "HAS_SAFE_RADIUS",
-    "TWICE",  "SKIP_SHADING", "LOCAL_NORMALS", "PICK",        "CACHED",     "FAR_CELLS",
-    "AROUND", "ONE_LIGHT",    "BLENDED",       "PICTURE",     "FIELD_ONLY", "TIME",
-    "ES",     "LOCATIONS",    "MARKED",        "OWN",         "UNPAINTED",  "PAINTED",
-    "LIT",    "CLASSIC",      "SOFT",          "FOUR_OUTPUTS"};
+    "BOXED",  "UNIT_SLOPE",   "SHADED_APART",  "PASSES",       "COUNTED",    "HAS_SAFE_RADIUS",
+    "TWICE",  "SKIP_SHADING", "LOCAL_NORMALS", "PICK",         "CACHED",     "FAR_CELLS",
+    "AROUND", "ONE_LIGHT",    "BLENDED",       "PICTURE",      "FIELD_ONLY", "TIME",
+    "ES",     "LOCATIONS",    "MARKED",        "OWN",          "UNPAINTED",  "PAINTED",
+    "LIT",    "CLASSIC",      "SOFT",          "FOUR_OUTPUTS", "ESTIMATED"};
 
 // What a flag decides beside its own `$if`, as the emitter has it.
 Values values_with(std::string_view name, const std::set<std::string> &on) {
@@ -91,6 +91,8 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "GRAZE",
                                "REFINED",
                                "CALM",
+                               "DARK",
+                               "SHARE",
                                "CLOSED_FROM",
                                "MARKS",
                                "SHADOW_ARM",
@@ -114,12 +116,12 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "CELL"})
         values.emplace(number, "0.5");
     for (const char *count :
-         {"LIGHTS",   "MAX_STEPS",   "ALL_TAPS",  "REFINEMENTS", "MAX_TOUCHES", "MANY_STEPS",
-          "SEARCHES", "CHECK_STEPS", "AGES",      "ROWS",        "COUNT",       "WISHES",
-          "SAMPLED",  "HIGHEST",     "HIGH_BITS", "HIGH_MASK",   "PLACE_BITS",  "HEAD",
-          "TAIL",     "LIMIT",       "INSERTED",  "EVICTED",     "DELETED",     "CROWDED",
-          "FULL",     "SWEPT",       "CHANGED",   "PAID",        "WASTED",      "LEFT",
-          "STEPS",    "MANY",        "REFUSED",   "STRIDE",      "LAST"})
+         {"LIGHTS",     "MAX_STEPS", "ALL_TAPS",    "REFINEMENTS", "MAX_TOUCHES", "COMES",
+          "MANY_STEPS", "SEARCHES",  "CHECK_STEPS", "AGES",        "ROWS",        "COUNT",
+          "WISHES",     "SAMPLED",   "HIGHEST",     "HIGH_BITS",   "HIGH_MASK",   "PLACE_BITS",
+          "HEAD",       "TAIL",      "LIMIT",       "INSERTED",    "EVICTED",     "DELETED",
+          "CROWDED",    "FULL",      "SWEPT",       "CHANGED",     "PAID",        "WASTED",
+          "LEFT",       "STEPS",     "MANY",        "REFUSED",     "STRIDE",      "LAST"})
         values.emplace(count, "2");
     for (const char *word : {"EMPTY", "NOWHERE", "PLACES"}) values.emplace(word, "7u");
     for (const std::string &flag : flags) values.emplace(flag, is(flag.c_str()) ? "1" : "");
