@@ -38,8 +38,9 @@
 //       between them. Go back to the first sphere's edge: t += before - stride, stride = before,
 //       aims = false, and go on with the next iteration
 //     if d <= 0: a hit between t - stride and t (REFINED)
-//     d < before and estimate*d < tolerance(t), for the comes-th time in a row: a hit at
-//       t - tolerance(t)/2, from where a gradient does not cross the surface (ESTIMATES)
+//     where Frame::estimate > 0, if d < slack(t)/4, or d < before and estimate*d < tolerance(t) for
+//       the comes-th time in a row: a hit at t - tolerance(t)/2, from where a gradient does not
+//       cross the surface (ESTIMATES)
 //     if d < slack(t)/4 and touches = 0: look BESIDE; by what is there touches = -1 (it grazes a
 //       solid), 1 (it touches a sheet) or 0 (the surface is farther than d says)
 //     else if d < slack(t)/4 and touches > 0: touches += 1; beyond max_touches undecided at t

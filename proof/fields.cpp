@@ -250,9 +250,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     int dims = scene.shapes[id].dims;
     const bool leaf = scene.shapes[id].kind == ShapeKind::Leaf;
     const bool has_region = leaf || what == "the map"; // an argument `within:`
-    const std::string assume =
-        leaf ? "or state a bound that you know with `lipschitz:`, which is then tested"
-             : "or limit it";
+    const std::string assume = leaf ? std::string("or ") + state_a_bound : "or limit it";
     if (b.too_large) {
         if (Diagnostic *d =
                 report(id, Code::LipschitzUnbounded, what + " is too large to be analysed"))
@@ -491,7 +489,8 @@ void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate)
                 report(id, Code::LipschitzViolated,
                        "the field is steeper than `lipschitz: " + number_text(limit) + "` says"))
             d->note(witness).help("state at least " + number_text(std::ceil(worst * 100) / 100) +
-                                  ", or leave `lipschitz:` out to have it proved");
+                                  ", or leave `lipschitz:` out to have it proved; what is no "
+                                  "distance, as a fractal's, can be drawn by an `estimate:`");
         // The picture is refused; what depends on it is not reported again.
     }
 }

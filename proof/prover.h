@@ -24,6 +24,10 @@ struct Place {
     bool shared = false;
 };
 
+// What helps where a bound of a field of one's own is not proved.
+inline constexpr const char *state_a_bound =
+    "state a bound with `lipschitz:`, which is tested, or with `estimate:`, which is not";
+
 struct Prover {
     ir::Scene &scene;
     Diagnostics &diagnostics;

@@ -66,9 +66,7 @@ void Prover::check_size(ShapeId id, Derived &k) {
     if (d && steep)
         d->note("no step could be divided by that")
             .help(std::string("choose a smaller region, fewer turns of a loop or smaller numbers") +
-                  (leaf ? ", or state a bound that you know with "
-                          "`lipschitz:`, which is then tested"
-                        : ""));
+                  (leaf ? std::string(", or ") + state_a_bound : ""));
     else if (d)
         d->note("fields are computed in single precision, which has to hold the squares of "
                 "lengths")

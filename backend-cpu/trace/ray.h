@@ -40,8 +40,9 @@ inline Verdict judge(Walk &walk, const Lengths &lengths) {
     const bool comes = lengths.estimate > 0 && walk.d < walk.before &&
                        lengths.estimate * walk.d < lengths.tolerance(walk.t);
     walk.comes = comes ? walk.comes + 1 : 0;
-    if (walk.comes == ir::shading::comes) return Verdict::Near;
-    if (walk.d < 0.25f * lengths.slack_at(walk.t)) {
+    const bool touch = walk.d < 0.25f * lengths.slack_at(walk.t);
+    if (walk.comes == ir::shading::comes || (touch && lengths.estimate > 0)) return Verdict::Near;
+    if (touch) {
         if (walk.touches == 0) return Verdict::Touches;
         if (walk.touches > 0 && ++walk.touches > ir::shading::max_touches)
             return Verdict::Undecided;

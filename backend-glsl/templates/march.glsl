@@ -195,6 +195,7 @@ $end
             found = !(d >= 0.25 * fathom_slack_at(t)) || touches != 0;
 $if ESTIMATED
             comes = d < min(before, $SHARE * tolerance) ? comes + 1 : 0;
+            if (d < 0.25 * fathom_slack_at(t)) comes = $COMES;
             found = found || comes == $COMES;
 $end
             if (found) break;
