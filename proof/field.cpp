@@ -103,6 +103,8 @@ double widest(const Cell &cell, const std::array<bool, 3> &reads, int *axis) {
     return most;
 }
 
+// A bound over a slope seen, from which on twice the work is done, and so on, at last if that helps.
+constexpr double loose = 1.3, least_progress = 0.97;
 constexpr double ways_gain = 0.98; // what a bound by ways is at most, of the one that it replaces
 
 constexpr int first_ways = 3, more_ways = 3; // depths; halving often does as well, for less
@@ -216,7 +218,7 @@ namespace {
 
 // Of the points of a zone.
 Distances distances_of(const Zone &zone) {
-    constexpr double loose = 1e-12; // as in `misses`
+    constexpr double slack = 1e-12; // as in `misses`
     Distances out;
     const auto keep = [&](const Zone &round, bool inside) {
         const bool is_ball = round.kind == ir::RegionKind::Ball;
@@ -224,13 +226,13 @@ Distances distances_of(const Zone &zone) {
         for (const Interval &x : round.center)
             if (is_ball && !(x == Interval(0.0))) return;
         if (inside) {
-            const double most = round.half[0].hi * (1 + loose);
+            const double most = round.half[0].hi * (1 + slack);
             for (std::size_t i = 0; i < 3; ++i)
                 if (is_ball || int(i) == round.axis)
                     out.from_axis[i].hi = std::min(out.from_axis[i].hi, most);
             if (is_ball) out.from_origin.hi = most;
         } else {
-            const double least = round.half[0].lo * (1 - loose);
+            const double least = round.half[0].lo * (1 - slack);
             Interval &of = is_ball ? out.from_origin : out.from_axis[std::size_t(round.axis)];
             of.lo = std::max(of.lo, least);
         }
@@ -296,11 +298,17 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, NodeId field,
     double settled = 0; // of cells that cannot be cut any more
     Interval settled_value{infinity, -infinity};
     std::size_t limit = std::max(budget.instructions, 200 * tape.length());
+    double at_limit = infinity; // the bound when the last limit was reached
     while (!queue.empty()) {
         Candidate top = queue.top();
         if (top.bound <= std::max({out.sampled * budget.tolerance, settled, budget.enough})) break;
         if (out.sampled > budget.hopeless) break;
-        if (top.bound != infinity && machine.work() > limit) break;
+        if (top.bound != infinity && machine.work() > limit) {
+            const bool helped = limit < budget.most / 2 || top.bound < least_progress * at_limit;
+            if (limit >= budget.most || top.bound < loose * out.sampled || !helped) break;
+            limit *= 2;
+            at_limit = top.bound;
+        }
         queue.pop();
         const auto [cell, value] = cells[top.at];
         int axis = 0;

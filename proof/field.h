@@ -29,6 +29,7 @@ struct Budget {
     double tolerance = 1.05; // the bound over the largest slope seen, at which to stop
     double enough = 0;       // a bound than which none need be less
     double hopeless = ir::rounding::infinity; // a slope seen from which on the bound is of no use
+    std::size_t most = 0; // instructions where the bound is far above what is seen; 0: no more
 };
 
 struct FieldBound {

@@ -73,6 +73,7 @@ Scaled split(ir::Graph &graph, NodeId id, int depth = 0) {
 FieldBound Prover::bound_once(NodeId field, const Place &here) {
     Budget budget;
     budget.instructions = options.field_instructions;
+    budget.most = 16 * options.field_instructions;
     const Scaled parts = split(graph, field);
     const double by = std::fabs(parts.by);
     if (here.zone || !parts.rest || !(by > 0) || !std::isfinite(by))
