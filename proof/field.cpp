@@ -103,8 +103,18 @@ double widest(const Cell &cell, const std::array<bool, 3> &reads, int *axis) {
     return most;
 }
 
-// A bound over a slope seen, from which on twice the work is done, and so on, at last if that helps.
-constexpr double loose = 1.3, least_progress = 0.97;
+// Whether more than `limit` instructions are run for a bound that is above the slope seen: twice as
+// many, and so on; the last of them if that helped since `at_limit`, the bound at the limit before.
+bool goes_on(const Budget &budget, double bound, double seen, std::size_t &limit,
+             double &at_limit) {
+    constexpr double loose = 1.3, helped = 0.97;
+    const bool helps = limit < budget.most / 2 || bound < helped * at_limit;
+    if (limit >= budget.most || bound < loose * seen || !helps) return false;
+    limit *= 2;
+    at_limit = bound;
+    return true;
+}
+
 constexpr double ways_gain = 0.98; // what a bound by ways is at most, of the one that it replaces
 
 constexpr int first_ways = 3, more_ways = 3; // depths; halving often does as well, for less
@@ -303,12 +313,9 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, NodeId field,
         Candidate top = queue.top();
         if (top.bound <= std::max({out.sampled * budget.tolerance, settled, budget.enough})) break;
         if (out.sampled > budget.hopeless) break;
-        if (top.bound != infinity && machine.work() > limit) {
-            const bool helped = limit < budget.most / 2 || top.bound < least_progress * at_limit;
-            if (limit >= budget.most || top.bound < loose * out.sampled || !helped) break;
-            limit *= 2;
-            at_limit = top.bound;
-        }
+        if (top.bound != infinity && machine.work() > limit &&
+            !goes_on(budget, top.bound, out.sampled, limit, at_limit))
+            break;
         queue.pop();
         const auto [cell, value] = cells[top.at];
         int axis = 0;
