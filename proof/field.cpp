@@ -103,6 +103,17 @@ double widest(const Cell &cell, const std::array<bool, 3> &reads, int *axis) {
     return most;
 }
 
+// Of a cell that may be endless, not far from the origin.
+std::array<double, 3> some_point(const Cell &cell, Dice &dice) {
+    std::array<double, 3> p{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        double lo = std::max(cell.p[i].lo, -8.0), hi = std::min(cell.p[i].hi, 8.0);
+        if (lo > hi) lo = hi = cell.p[i].middle();
+        p[i] = lo + (hi - lo) * dice.next();
+    }
+    return p;
+}
+
 // Whether more than `limit` instructions are run for a bound that is above the slope seen: twice as
 // many, and so on; the last of them if that helped since `at_limit`, the bound at the limit before.
 bool goes_on(const Budget &budget, double bound, double seen, std::size_t &limit,
@@ -283,15 +294,7 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, NodeId field,
             out.sampled = std::max(out.sampled, machine.norm() * (1 - 1e-9));
     };
     Dice dice{0x5eed};
-    for (int k = 0; k < 24; ++k) {
-        std::array<double, 3> p{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            double lo = std::max(whole.p[i].lo, -8.0), hi = std::min(whole.p[i].hi, 8.0);
-            if (lo > hi) lo = hi = whole.p[i].middle();
-            p[i] = lo + (hi - lo) * dice.next();
-        }
-        sample(p);
-    }
+    for (int k = 0; k < 24; ++k) sample(some_point(whole, dice));
 
     std::priority_queue<Candidate, std::vector<Candidate>, Worse> queue;
     std::vector<std::pair<Cell, Interval>> cells;
