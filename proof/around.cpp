@@ -1,5 +1,6 @@
 // F = m(r) g(a), a the angle and r the length of q = [x, y]: along r it changes by m' g, across by
-// m g'/r. Where |m| <= k r and |m'| <= c both are bounded, though g'/r is not.
+// m g'/r. Where |m| <= k r and |m'| <= c both are bounded, though g'/r is not. Of m(r) g(h a + s)
+// there is m g' times what s does besides.
 #include "proof/around.h"
 
 #include "proof/continuity.h"
@@ -18,14 +19,14 @@ using ir::Graph;
 
 constexpr std::size_t max_nodes_of_turn = 60, max_instructions = 20'000;
 
-// Does an expression change with the point through this angle alone?
-bool reads_alone(const Graph &graph, NodeId root, NodeId angle) {
+// Does an expression change with the point through this number alone?
+bool reads_alone(const Graph &graph, NodeId root, NodeId number) {
     std::vector<NodeId> todo{root};
     std::unordered_set<NodeId> seen;
     while (!todo.empty()) {
         const NodeId id = todo.back();
         todo.pop_back();
-        if (id == angle || !seen.insert(id).second) continue;
+        if (id == number || !seen.insert(id).second) continue;
         const ir::Graph::Reads reads = graph.reads(id);
         if (!reads.point && !reads.free_vars) continue;
         constexpr ir::OpSet opaque{Op::Point, Op::Var,        Op::Loop,
@@ -44,6 +45,28 @@ std::optional<NodeId> angle_in(const Graph &graph, NodeId root) {
         todo.pop_back();
         if (!seen.insert(id).second) continue;
         if (graph[id].op == Op::Atan2 && graph[id].type == ir::Type::Float) return id;
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    return {};
+}
+
+// The sum h*angle + rest by which alone an expression changes with the point.
+struct Turned {
+    NodeId sum, rest;
+    double by = 0;
+};
+std::optional<Turned> turned_in(Graph &graph, NodeId root, NodeId angle) {
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty() && seen.size() <= max_nodes_of_turn) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        const bool sum = graph[id].type == ir::Type::Float &&
+                         (graph[id].op == Op::Add || graph[id].op == Op::Sub);
+        if (sum && reads_alone(graph, root, id))
+            if (const auto line = linear_in(graph, id, angle); line && line->by != 0)
+                return Turned{id, line->rest, line->by};
         todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
     }
     return {};
@@ -73,7 +96,8 @@ struct Axis {
             const bool own = (a == x && b == y) || (a == y && b == x);
             return own ? std::optional(Vanishing()) : std::nullopt;
         }
-        if (node.op == Op::Neg || node.op == Op::Abs) return of(arg(0), depth + 1);
+        if (node.op == Op::Neg || node.op == Op::Abs || node.op == Op::Sin || node.op == Op::Tanh)
+            return of(arg(0), depth + 1);
         if (node.op == Op::Mul)
             for (int i = 0; i < 2; ++i)
                 if (const auto by = graph.as_number(arg(i)))
@@ -85,6 +109,9 @@ struct Axis {
             for (int i = 0; i < 2; ++i)
                 if (const auto most = graph.as_number(arg(i)); most && *most >= 0)
                     return of(arg(1 - i), depth + 1);
+        if (node.op == Op::Clamp && graph.as_number(arg(1)).value_or(1) <= 0 &&
+            graph.as_number(arg(2)).value_or(-1) >= 0)
+            return of(arg(0), depth + 1);
         if (node.op == Op::Smoothstep && graph.as_number(arg(0)) == 0.0)
             if (const auto end = graph.as_number(arg(1)); end && *end > 0)
                 return scaled(of(arg(2), depth + 1), 1.125 / *end, 1.5 / *end);
@@ -95,23 +122,31 @@ struct Axis {
 std::optional<Around> found_around(Flattening &context, NodeId m, NodeId g) {
     Graph &graph = context.graph;
     const auto angle = angle_in(graph, g);
-    if (!angle || !reads_alone(graph, g, *angle)) return {};
+    if (!angle) return {};
+    std::optional<Turned> turned;
+    if (!reads_alone(graph, g, *angle) && !(turned = turned_in(graph, g, *angle))) return {};
     const NodeId y = graph.arg(*angle, 0), x = graph.arg(*angle, 1);
     const auto vanishing = Axis{graph, x, y}.of(m);
     if (!vanishing) return {};
     const NodeId turn = graph.component(graph.point(), 0);
-    const NodeId along = ir::substitute(graph, g, {{*angle, turn}});
+    const NodeId along = ir::substitute(graph, g, {{turned ? turned->sum : *angle, turn}});
     Domain line;
     constexpr double half_turn = std::numbers::pi * (1 + 1e-6);
-    line.box.p = {Interval(-half_turn, half_turn), Interval(0.0), Interval(0.0)};
+    line.box.p = {turned ? Interval::everything() : Interval(-half_turn, half_turn), Interval(0.0),
+                  Interval(0.0)};
     Budget budget;
     budget.instructions = max_instructions;
     const double steep = bound_field(context, *context.ranges, along, line, budget).lipschitz,
-                 most = bound_magnitude(context, *context.ranges, along, line, budget);
-    const double radial = most * vanishing->slope, across = steep * vanishing->size;
+                 most = turned ? range_of(context, *context.ranges, along, line.box)[0].magnitude()
+                               : bound_magnitude(context, *context.ranges, along, line, budget);
+    const double radial = most * vanishing->slope,
+                 across = steep * vanishing->size * (turned ? std::fabs(turned->by) : 1);
     const double by = vanishing->radial ? std::hypot(radial, across) : radial + across;
     if (!std::isfinite(by)) return {};
-    return Around{*angle, graph.make(Op::Make, ir::Type::Vec2, {x, y}), ir::rounding::up(by, 16)};
+    Around out{*angle, graph.make(Op::Make, ir::Type::Vec2, {x, y}), ir::rounding::up(by, 16)};
+    if (turned)
+        out.vanishing = m, out.rest = turned->rest, out.rest_by = ir::rounding::up(steep, 4);
+    return out;
 }
 
 } // namespace

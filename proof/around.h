@@ -8,11 +8,14 @@
 
 namespace fathom::proof {
 
-// The product is no steeper than `by` times [x, y], whose angle it is, wherever the cut of `angle`
-// is not seen, for all params and times of the context. Nothing where it is no such product.
+// The product is no steeper than `by` times [x, y], whose angle it is, and `rest_by` times `rest`,
+// where there is such a number, times the size of `vanishing`, wherever the cut of `angle` is not
+// seen, for all params and times of the context. Nothing where it is no such product.
 struct Around {
     NodeId angle, vector;
     double by = 1;
+    NodeId vanishing{}, rest{};
+    double rest_by = 0;
 };
 std::optional<Around> around_axis(Flattening &context, NodeId product);
 

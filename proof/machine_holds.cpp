@@ -67,9 +67,14 @@ void Machine::hold_norm(Slot s, double most) {
 
 // A product about an axis on which its angle is singular, and it is not (around.h).
 void Machine::hold_around(const Instruction &instruction) {
-    const Slot out = instruction.out, vector = instruction.around->vector;
+    const auto [vector, by, vanishing, rest, rest_by] = *instruction.around;
+    const Slot out = instruction.out;
     const std::uint32_t part = tape_.first[vector];
-    const double most = up(times(instruction.around->by, norm_[vector]), 4);
+    double most = up(times(by, norm_[vector]), 4);
+    if (rest_by > 0) {
+        if (odd_[tape_.first[rest]] || odd_[tape_.first[vanishing]]) return;
+        most = up(most + times(times(value(vanishing, 0).magnitude(), rest_by), norm_[rest]), 8);
+    }
     if (!(most < norm_[out]) || trouble_[out] == Trouble::Overflow) return;
     if ((tape_.near && !near_) || odd_[part] || odd_[part + 1]) return;
     trouble_[out] = Trouble::None;

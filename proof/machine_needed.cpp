@@ -64,6 +64,8 @@ void Machine::need_args(const Instruction &in, std::vector<bool> &wanted) const 
     for (const Slot s : in.turned) wanted[s] = true;
     if (in.turning) wanted[in.turning->vector] = wanted[in.turning->angle] = true;
     if (in.around) wanted[in.around->vector] = true;
+    if (in.around && in.around->rest_by > 0)
+        wanted[in.around->vanishing] = wanted[in.around->rest] = true;
     if (in.along) wanted[in.along->vector] = wanted[in.along->factor] = true;
     if (in.between) {
         wanted[in.between->vector] = true;

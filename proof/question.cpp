@@ -45,6 +45,7 @@ void Question::add(const Budget &budget) {
     add(budget.tolerance);
     add(budget.enough);
     add(budget.hopeless);
+    add(static_cast<double>(budget.most));
 }
 
 // The ranges of what the field reads, by the numbers that it has in the words.

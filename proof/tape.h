@@ -80,10 +80,13 @@ struct Instruction {
     };
     std::optional<Turning> turning;
     std::optional<MeanOf<Slot>> mean; // of a scalar
-    // Of a product that turns about an axis (around.h): it is no steeper than `by` times `vector`.
+    // Of a product that turns about an axis (around.h): it is no steeper than `by` times `vector`,
+    // and the size of `vanishing` times `rest_by` times `rest`, where that is not 0.
     struct AroundAxis {
         Slot vector = 0;
         double by = 1;
+        Slot vanishing = 0, rest = 0;
+        double rest_by = 0;
     };
     std::optional<AroundAxis> around;
     // Of a product that is along a vector (radial.h): it is no steeper than the factor's size times

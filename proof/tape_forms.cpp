@@ -236,7 +236,11 @@ Slot Flattener::product(Scope &scope, NodeId id, Instruction out) {
     for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
     if (out.type != ir::Type::Float && !ir::is_vector(out.type)) return emit(scope, std::move(out));
     if (const auto around = around_axis(context, id); around && cancelling.contains(around->angle))
-        out.around = {slot(scope, around->vector), around->by};
+        out.around = around->rest
+                         ? Instruction::AroundAxis{slot(scope, around->vector), around->by,
+                                                   slot(scope, around->vanishing),
+                                                   slot(scope, around->rest), around->rest_by}
+                         : Instruction::AroundAxis{slot(scope, around->vector), around->by};
     find_radial(scope, id, out);
     return emit_by_pieces(scope, id, std::move(out), {id});
 }
