@@ -123,10 +123,10 @@ class Adversary : public Chance {
             &Adversary::repetitions, &Adversary::loops,  &Adversary::nested,
             &Adversary::angles,      &Adversary::uses,   &Adversary::noise,
             &Adversary::turns,       &Adversary::cells,  &Adversary::sized,
-            &Adversary::tilings};
+            &Adversary::tilings,     &Adversary::spirals};
         return (this->*makers[kind % makers.size()])();
     }
-    static constexpr std::size_t kinds = 19;
+    static constexpr std::size_t kinds = 20;
 
   private:
     // A linear form whose borders others share.
@@ -435,6 +435,43 @@ class Adversary : public Chance {
         for (std::size_t at; (at = text.find('S')) != text.npos;) text.replace(at, 1, shift);
         return param() + "implicit(p => {\n " + text + "\n}, within: " +
                of({"ball(2)", "everywhere", "aabb([-1.5, -1, -2], [1.5, 2, 1.5])"}) + ")\n";
+    }
+
+    // What turns about an axis by an angle and more, and fades there, or nearly.
+    std::string spirals() {
+        const std::string turns = of({"a", "2 * a", "-3 * a", "5 * a", "0.5 * a", "w * a", "a * r",
+                                      "round(w) * a", "a + a", "a - 3 * a"});
+        const std::string rest =
+            of({"2 * r", "-3 * log(r + 0.2)", "p.y", "k * p.y", "sin(3 * p.y) + 1", "time",
+                "p.x * p.y", "length(p)", "floor(3 * r)", "1 / (r + 0.1)", "abs(p.x)", "a",
+                "noise(2 * p)", "atan(p.z, p.x + 0.3)", "sqrt(r)", "log(r)"});
+        const std::string fades = of({"r",
+                                      "min(r, 0.3)",
+                                      "clamp(r, 0, 0.4)",
+                                      "clamp(r, 0.1, 0.4)",
+                                      "smoothstep(0, 0.5, r)",
+                                      "smoothstep(-0.1, 0.5, r)",
+                                      "0.7 * p.x",
+                                      "abs(p.z)",
+                                      "tanh(2 * r)",
+                                      "sin(3 * r)",
+                                      "cos(r)",
+                                      "clamp(p.x, -0.3, 0.3)",
+                                      "-r / 0.6",
+                                      "r - 0.1",
+                                      "min(r, -0.1)",
+                                      "length(p)",
+                                      "p.y",
+                                      "r * r",
+                                      "max(r, 0.1)",
+                                      "sin(p.x)"});
+        const std::string wave = of({"sin(u)", "cos(u)", "(0.2 + 0.5 * sin(u))", "abs(sin(u))",
+                                     "sin(u) * cos(2 * u)", "max(cos(u), 0.2)", "exp(sin(u))",
+                                     "fract(u)", "sin(u) * u", "sign(sin(u))", "cos(u + p.y)"});
+        return "param k = 1 in -2..2\nparam w = 2 in 1..4\nimplicit(p => {\n let r = length(p.xz)" +
+               std::string("\n let a = atan(p.z, p.x)\n let u = ") + turns + of({" + ", " - "}) +
+               rest + "\n 0.3 * (" + fades + ") * " + wave + of({"", " - 0.1", " + 0.2 * p.y"}) +
+               "\n}, within: ball(2))\n";
     }
 
     // Copies that differ from cell to cell, hidden at the cells' borders, or nearly.
