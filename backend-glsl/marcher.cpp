@@ -70,7 +70,7 @@ Values values_of(const MarcherOptions &options) {
         {"REFINED", float_literal(shading::refined)},
         {"SHADOW_ARM", float_literal(shading::shadow_arm)},
         {"CALM", float_literal(shading::calm)},
-        {"COMES", fmt::to_string(shading::comes)},
+        {"NEARING", fmt::to_string(shading::nearing)},
         {"SHARE", float_literal(1 / std::max(options.estimate, 1.0))},
         {"DARK", float_literal(shading::dark / std::max(options.estimate, 1.0))},
         {"MARKS", float_literal(shading::marks)},

@@ -39,7 +39,7 @@
 //       aims = false, and go on with the next iteration
 //     if d <= 0: a hit between t - stride and t (REFINED)
 //     where Frame::estimate > 0, if d < slack(t)/4, or d < before and estimate*d < tolerance(t) for
-//       the comes-th time in a row: a hit at t - tolerance(t)/2, from where a gradient does not
+//       the nearing-th time in a row: a hit at t - tolerance(t)/2, from where a gradient does not
 //       cross the surface (ESTIMATES)
 //     if d < slack(t)/4 and touches = 0: look BESIDE; by what is there touches = -1 (it grazes a
 //       solid), 1 (it touches a sheet) or 0 (the surface is farther than d says)
@@ -150,7 +150,7 @@
 //
 // ESTIMATES, in scenes where some shape's bound is an estimate (`Frame::estimate`, the greatest):
 // distances to fractals are such, and hardly anywhere change their sign. So a ray has hit where
-// `comes` samples in a row are within its tolerance, each nearer than the one before, which a ray that
+// `nearing` samples in a row are within its tolerance, each nearer than the one before, which a ray that
 // passes an edge has seldom; and a light is covered by what is much nearer to the way to it than
 // the light is wide. In all other scenes the sign alone decides.
 //
@@ -187,7 +187,7 @@ inline constexpr float jump = 2, graze = 1.0f / 16;         // tolerances
 inline constexpr int refinements = 12;
 inline constexpr float refined = 1.0f / 2048; // of a tolerance
 inline constexpr int max_touches = 8;
-inline constexpr int comes = 3;
+inline constexpr int nearing = 3;      // samples, by which an estimate is hit
 inline constexpr int many_steps = 256; // red in a picture of steps
 inline constexpr int budget = 65536;   // evaluations a ray, where the scene does not say
 inline constexpr float shadow_bias = 4;

@@ -14,7 +14,7 @@ struct Walk {
     float span = 0, reached = 0; // how far d reaches, and `before`; where that is more than they
     int steps = 0;
     int touches = 0;   // samples in a row as near as slack/4; below 0: of a solid that it grazes
-    int comes = 0;     // samples in a row within an estimate's tolerance, each nearer than the last
+    int nearing = 0;   // samples in a row within an estimate's tolerance, each nearer than the last
     bool aims = false; // the last step was to change the sign
 };
 
@@ -37,11 +37,12 @@ inline Verdict judge(Walk &walk, const Lengths &lengths) {
     if (walk.d <= 0 && walk.aims) return Verdict::Crossed;
     if (apart(walk)) return Verdict::GoBack;
     if (walk.d <= 0) return Verdict::Crossed;
-    const bool comes = lengths.estimate > 0 && walk.d < walk.before &&
-                       lengths.estimate * walk.d < lengths.tolerance(walk.t);
-    walk.comes = comes ? walk.comes + 1 : 0;
+    const bool nearing = lengths.estimate > 0 && walk.d < walk.before &&
+                         lengths.estimate * walk.d < lengths.tolerance(walk.t);
+    walk.nearing = nearing ? walk.nearing + 1 : 0;
     const bool touch = walk.d < 0.25f * lengths.slack_at(walk.t);
-    if (walk.comes == ir::shading::comes || (touch && lengths.estimate > 0)) return Verdict::Near;
+    if (walk.nearing == ir::shading::nearing || (touch && lengths.estimate > 0))
+        return Verdict::Near;
     if (touch) {
         if (walk.touches == 0) return Verdict::Touches;
         if (walk.touches > 0 && ++walk.touches > ir::shading::max_touches)

@@ -12,7 +12,7 @@ $if PASSES
 
 // A draw takes at most fathom_turns steps a ray. What a ray that goes on needs is kept, and given back to the next draw:
 //   0  the ray from the eye: t, before, stride, reached; one from a light: t of the hit, s, stride, shadow
-//   1  of that from a light: at, quiet; of one from the eye to an estimate: comes
+//   1  of that from a light: at, quiet; of one from the eye to an estimate: nearing
 //   2  the colour without that light
 //   3  the steps, the touches + 1 (+ 16 where it aims) or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
 //      eye's ray is undecided, and 2 where one from a light is
@@ -93,7 +93,7 @@ $if HAS_SAFE_RADIUS
 $end
     int steps = 0;
 $if ESTIMATED
-    int comes = 0; // samples in a row within the tolerance, each nearer than the one before
+    int nearing = 0; // samples in a row within the tolerance, each nearer than the one before
 $end
 $if PASSES
     if (fathom_resumed) {
@@ -114,7 +114,7 @@ $if HAS_SAFE_RADIUS
         reached = kept.w;
 $end
 $if ESTIMATED
-        comes = int(fathom_kept(fathom_kept_1).x);
+        nearing = int(fathom_kept(fathom_kept_1).x);
 $end
         aims = more.y > 15.0;
         touches = int(more.y) - (aims ? 17 : 1);
@@ -194,9 +194,9 @@ $end
             }
             found = !(d >= 0.25 * fathom_slack_at(t)) || touches != 0;
 $if ESTIMATED
-            comes = d < min(before, $SHARE * tolerance) ? comes + 1 : 0;
-            if (d < 0.25 * fathom_slack_at(t)) comes = $COMES;
-            found = found || comes == $COMES;
+            nearing = d < min(before, $SHARE * tolerance) ? nearing + 1 : 0;
+            if (d < 0.25 * fathom_slack_at(t)) nearing = $NEARING;
+            found = found || nearing == $NEARING;
 $end
             if (found) break;
             float ahead = d;
@@ -209,7 +209,7 @@ $include march_ahead
             break;
         }
 $if ESTIMATED
-        if (phase == 0 && d > 0.0 && comes == $COMES) {
+        if (phase == 0 && d > 0.0 && nearing == $NEARING) {
             t -= 0.5 * tolerance;
             fathom_end = 1;
             break;
@@ -326,7 +326,7 @@ $else
         fathom_keep_0 = vec4(t, before, stride, 0.0);
 $end
 $if ESTIMATED
-        fathom_keep_1 = vec4(float(comes), 0.0, 0.0, 0.0);
+        fathom_keep_1 = vec4(float(nearing), 0.0, 0.0, 0.0);
 $end
         fathom_keep_3 = vec4(float(steps), float(touches + (aims ? 17 : 1)), -1.0, 0.0);
     }

@@ -116,7 +116,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "CELL"})
         values.emplace(number, "0.5");
     for (const char *count :
-         {"LIGHTS",     "MAX_STEPS", "ALL_TAPS",    "REFINEMENTS", "MAX_TOUCHES", "COMES",
+         {"LIGHTS",     "MAX_STEPS", "ALL_TAPS",    "REFINEMENTS", "MAX_TOUCHES", "NEARING",
           "MANY_STEPS", "SEARCHES",  "CHECK_STEPS", "AGES",        "ROWS",        "COUNT",
           "WISHES",     "SAMPLED",   "HIGHEST",     "HIGH_BITS",   "HIGH_MASK",   "PLACE_BITS",
           "HEAD",       "TAIL",      "LIMIT",       "INSERTED",    "EVICTED",     "DELETED",
