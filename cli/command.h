@@ -135,8 +135,8 @@ struct SolidArguments {
     FrameList frames; // a file for each; empty: one
     double frame_rate = 30;
     std::vector<Sweep> sweeps;
-    std::string units; // what a length of 1 is, a word of unit_names(); empty: unsaid
-    std::string field; // a function of the point that a volume holds; empty: distances
+    std::string units;               // what a length of 1 is, a word of unit_names(); empty: unsaid
+    std::vector<std::string> fields; // functions of the point that a volume holds; none: distances
 };
 // `fathom mesh`.
 struct MeshCommand {

@@ -217,6 +217,8 @@ std::string of(const VolumeCommand &volume, const Given &given) {
         return "--voxel and --resolution both say how fine a volume is: give one of them";
     if (given("--band") && suffix_of(volume.out) != ".vdb")
         return "--band is of a .vdb: .nrrd and .npy hold all voxels";
+    if (volume.solid.fields.size() > 1 && suffix_of(volume.out) != ".vdb")
+        return "several fields are of a .vdb: .nrrd and .npy hold one";
     for (const char *option : {"--band", "--certify", "--part"})
         if (given("--field") && given(option))
             return fmt::format("{} is of distances, and --field writes others", option);

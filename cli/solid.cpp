@@ -37,7 +37,7 @@ Exit exit_of(v1::MeshStatus status) {
 v1::CompileResult compiled(const SolidArguments &arguments) {
     v1::CompileOptions options = library_options(arguments.scene);
     if (arguments.flat) options.flat_thickness = 1;
-    if (!arguments.field.empty()) options.fields = {arguments.field};
+    options.fields = arguments.fields;
     v1::CompileResult result = v1::compile_file(arguments.scene.file, options);
     if (!arguments.flat || !result || !result.scene->facts().bounds) return result;
     const v1::Box box = *result.scene->facts().bounds;

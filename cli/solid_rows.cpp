@@ -102,9 +102,9 @@ std::vector<OptionRow> volume_rows(VolumeCommand &command) {
          }},
         {"--field", "FUNCTION",
          "instead of distances what a function of the point gives: its name in the scene, or "
-         "`p => …`",
+         "`p => …`; of a .vdb several",
          [&](const std::string &word) {
-             command.solid.field = word;
+             command.solid.fields.push_back(word);
              return std::string(word.empty() ? "wants a function" : "");
          }}};
     for (OptionRow &row : solid_rows(command.solid))

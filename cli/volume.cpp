@@ -22,43 +22,56 @@ v1::VolumeOptions volume_options(const VolumeCommand &command, const SolidFrame 
     options.bounds = solid.bounds;
     options.time = solid.time;
     options.certify = command.certify;
-    if (!command.solid.field.empty()) {
-        options.field = 0;
-        return options;
-    }
+    if (!command.solid.fields.empty()) return options;
     if (suffix_of(command.out) != ".vdb") return options;
     options.band = command.band;
     options.colors = true;
     return options;
 }
 
-// Of a grid: the function's, where it has one.
-std::string name_of(const std::string &field) {
+// Of grids: the functions', where they have one, else `density`; no two are alike.
+std::vector<std::string> names_of(const std::vector<std::string> &fields) {
     const auto in_name = [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
     };
-    return !field.empty() && std::ranges::all_of(field, in_name) ? field : "density";
+    std::vector<std::string> names;
+    for (const std::string &field : fields) {
+        const std::string name = std::ranges::all_of(field, in_name) ? field : "density";
+        std::string own = name;
+        for (int i = 2; std::ranges::find(names, own) != names.end(); ++i)
+            own = fmt::format("{}_{}", name, i);
+        names.push_back(own);
+    }
+    return names;
 }
 
 // What is to be written, or why there is nothing.
-std::string bytes_of(const v1::Volume &volume, const VolumeCommand &command, std::string &why) {
+std::string bytes_of(const std::vector<v1::Volume> &volumes, const VolumeCommand &command,
+                     std::string &why) {
     const std::string suffix = suffix_of(command.out);
-    if (suffix == ".npy") return v1::npy_file(volume);
-    if (suffix != ".vdb") return v1::nrrd_file(volume);
-    v1::VdbFile file = v1::vdb_file(volume, name_of(command.solid.field));
+    if (suffix == ".npy") return v1::npy_file(volumes[0]);
+    if (suffix != ".vdb") return v1::nrrd_file(volumes[0]);
+    const std::vector<std::string> names = names_of(command.solid.fields);
+    std::vector<v1::NamedVolume> named;
+    for (std::size_t i = 0; i < names.size(); ++i) named.push_back({names[i], &volumes[i]});
+    v1::VdbFile file = named.empty() ? v1::vdb_file(volumes[0]) : v1::vdb_file(named);
     why = std::move(file.message);
     return std::move(file.bytes);
 }
 
-std::string json_of(const v1::Volume &volume) {
+std::string json_of(const std::vector<v1::Volume> &volumes, const VolumeCommand &command) {
     nlohmann::ordered_json json;
+    const v1::Volume &volume = volumes[0];
     if (volume.components > 0) {
         const auto size = static_cast<std::size_t>(volume.components);
         json["voxels"] = volume.values.size() / size;
         json["counts"] = volume.counts;
         json["origin"] = volume.origin;
         json["side"] = volume.side;
-        json["components"] = volume.components;
+        if (volumes.size() == 1) json["components"] = volume.components;
+        const std::vector<std::string> names = names_of(command.solid.fields);
+        for (std::size_t i = 0; i < volumes.size() && volumes.size() > 1; ++i)
+            json["grids"].push_back({{"name", names[i]}, {"components", volumes[i].components}});
         return json.dump() + "\n";
     }
     json["voxels"] = volume.distances.size();
@@ -75,27 +88,38 @@ std::string json_of(const v1::Volume &volume) {
 
 Exit make(const VolumeCommand &command, const SolidFrame &frame, Terminal &terminal) {
     v1::VolumeOptions options = volume_options(command, frame);
-    options.progress = frame.progress;
-    const v1::Volume volume = v1::make_volume(frame.scene, options);
-    stop_if_interrupted(terminal); // nothing is written
-    terminal.finish_progress();
-    if (!volume)
+    const std::size_t fields = command.solid.fields.size(),
+                      count = std::max<std::size_t>(fields, 1);
+    std::vector<v1::Volume> volumes;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (fields > 0) options.field = i;
+        if (frame.progress)
+            options.progress = [&](double done) {
+                return frame.progress((static_cast<double>(i) + done) / static_cast<double>(count));
+            };
+        volumes.push_back(v1::make_volume(frame.scene, options));
+        stop_if_interrupted(terminal); // nothing is written
+        if (volumes.back()) continue;
+        terminal.finish_progress();
         return say_refusal(frame.number ? frame.out : command.solid.scene.file, "volume",
-                           volume.status, volume.message, terminal);
+                           volumes.back().status, volumes.back().message, terminal);
+    }
+    terminal.finish_progress();
+    const v1::Volume &volume = volumes[0];
     if (volume.undecided_cells > 0)
         terminal.say(fmt::format(
             "{}: no error is proved: {} cells may hold surface that the distances do not know of; "
             "a smaller voxel or a tighter bound tells more",
             frame.out, volume.undecided_cells));
     std::string why;
-    const std::string bytes = bytes_of(volume, command, why);
+    const std::string bytes = bytes_of(volumes, command, why);
     if (bytes.empty()) {
         terminal.say(fmt::format("fathom: {}: {}", frame.out,
                                  why.empty() ? "there is not enough memory" : why));
         return device_error;
     }
     const Exit exit = write_result(frame.out, bytes, terminal);
-    if (exit == done && command.json) terminal.put(frame_json(frame, json_of(volume)));
+    if (exit == done && command.json) terminal.put(frame_json(frame, json_of(volumes, command)));
     return exit;
 }
 

@@ -23,6 +23,8 @@
 
 #include <fathom/mesh.h>
 
+#include <span>
+
 namespace fathom::FATHOM_V1 {
 
 struct VolumeOptions {
@@ -78,11 +80,20 @@ FATHOM_API std::string nrrd_file(const Volume &volume) noexcept;
 FATHOM_API std::string npy_file(const Volume &volume) noexcept;
 
 /** The bytes of an OpenVDB file: a level set `surface` of a band, with a grid `Cd` where it has colours;
- *  of a field a grid `name`, in which voxels whose numbers are all 0 are background; or why there are none: `message`. They are written by OpenVDB, which the module
- *  `libfathom-vdb.so` loads, beside the library or in a folder `fathom` beside it. */
+ *  of a field a grid `name`, in which voxels whose numbers are all 0 are background; or why there are
+ *  none: `message`. They are written by OpenVDB, which the module `libfathom-vdb.so` loads, beside the
+ *  library or in a folder `fathom` beside it. */
 struct VdbFile {
     std::string bytes, message;
 };
 FATHOM_API VdbFile vdb_file(const Volume &volume, const std::string &name = "density") noexcept;
+
+/** A volume of a field, and what its grid is called. */
+struct NamedVolume {
+    std::string name;
+    const Volume *volume = nullptr;
+};
+/** The same, with a grid for each of these, which have one `origin` and one `side`. */
+FATHOM_API VdbFile vdb_file(std::span<const NamedVolume> volumes) noexcept;
 
 } // namespace fathom::FATHOM_V1

@@ -180,6 +180,7 @@ TEST_CASE("a volume holds what another function of the scene gives") {
     fails("--field 'let a = 1'", 1, "no function of the point");
     fails("--field '('", 1, "--field:1:1");
     fails("--field density --certify off", 2, "--certify is of distances");
+    fails("--field density --field tint", 2, "several fields are of a .vdb");
     if (!FATHOM_WITH_VDB) return;
     CHECK(shell(folder, "fathom volume cloud.sdf --field density --resolution 8 -o d.vdb").exit ==
           0);
@@ -190,6 +191,27 @@ TEST_CASE("a volume holds what another function of the scene gives") {
     const std::vector<double> found = numbers_in(at.out);
     REQUIRE(found.size() == 8);
     CHECK((found[0] < 0 && found[4] > 0));
+
+    const Result several =
+        shell(folder, "fathom volume cloud.sdf --field density --field tint --field 'p => p.x' "
+                      "--field 'p => 2 * p.x' --json -o all.vdb" +
+                          about);
+    INFO(several.err);
+    REQUIRE(several.exit == 0);
+    const Json grids = Json::parse(several.out)["grids"];
+    REQUIRE(grids.size() == 4);
+    const std::pair<const char *, int> expected[] = {
+        {"density", 1}, {"tint", 3}, {"density_2", 1}, {"density_3", 1}};
+    for (std::size_t k = 0; k < 4; ++k)
+        CHECK((grids[k]["name"] == expected[k].first &&
+               grids[k]["components"] == expected[k].second));
+    folder.write("twice.sdf",
+                 "distance_grid(\"all.vdb\", grid: \"density_3\", isovalue: 1, above: true)\n");
+    const Result twice = shell(folder, "fathom eval twice.sdf 1 0 0  -1 0 0");
+    REQUIRE(twice.exit == 0);
+    const std::vector<double> sides = numbers_in(twice.out); // 2 and -2, less 1, of a voxel's side
+    REQUIRE(sides.size() == 8);
+    CHECK((sides[0] < 0 && sides[4] > 0));
 }
 
 TEST_CASE("what has no volume says why, and writes nothing") {

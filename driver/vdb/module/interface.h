@@ -16,17 +16,21 @@ struct FathomVdbGrid {
     const float *colors; // three a voxel, or null
 };
 
-// Of numbers that are no distances: `components` a voxel, 1 or 3, at the same places; 0 is background.
+// Numbers that are no distances: `components` a voxel, 1 or 3, at places of their own; 0 is background.
 struct FathomVdbNumbers {
     const char *name;
     int components;
+    std::size_t count;
+    const std::int32_t *at;
     const float *values;
 };
 
 // The bytes of a file go to `take`, in pieces. Gives 0, or 1 with words in `why`, which has `room`
 // bytes.
-// Without `numbers` the file is one of `distances`, else one of these in their place.
+// Where `fields` is 0 the file is one of `distances`, else one of so many grids of `numbers`, and of
+// `grid` only the origin and the side are read.
 using FathomWriteVdb = int (*)(const FathomVdbGrid *grid, const FathomVdbNumbers *numbers,
+                               std::size_t fields,
                                void (*take)(void *to, const char *bytes, std::size_t count),
                                void *to, char *why, std::size_t room);
 

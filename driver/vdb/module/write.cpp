@@ -19,7 +19,7 @@ openvdb::math::Transform::Ptr transform_of(const FathomVdbGrid &grid) {
     return transform;
 }
 
-Coord place_of(const FathomVdbGrid &grid, std::size_t k) {
+template <class Places> Coord place_of(const Places &grid, std::size_t k) {
     return {grid.at[3 * k], grid.at[3 * k + 1], grid.at[3 * k + 2]};
 }
 
@@ -47,26 +47,32 @@ openvdb::GridPtrVec grids_of(const FathomVdbGrid &from) {
 }
 
 template <class Grid, class ValueAt>
-openvdb::GridPtrVec grid_of(const FathomVdbGrid &places, const FathomVdbNumbers &from,
-                            openvdb::GridClass kind, const ValueAt &value_at) {
+openvdb::GridBase::Ptr grid_of(const FathomVdbGrid &lattice, const FathomVdbNumbers &from,
+                               openvdb::GridClass kind, const ValueAt &value_at) {
     const auto grid = Grid::create();
     grid->setName(from.name);
     grid->setGridClass(kind);
-    grid->setTransform(transform_of(places));
+    grid->setTransform(transform_of(lattice));
     auto values = grid->getAccessor();
-    for (std::size_t k = 0; k < places.count; ++k)
-        values.setValue(place_of(places, k), value_at(k));
-    return {grid};
+    for (std::size_t k = 0; k < from.count; ++k) values.setValue(place_of(from, k), value_at(k));
+    return grid;
 }
 
-openvdb::GridPtrVec grids_of(const FathomVdbGrid &places, const FathomVdbNumbers &from) {
+openvdb::GridBase::Ptr grid_of(const FathomVdbGrid &lattice, const FathomVdbNumbers &from) {
     if (from.components == 1)
-        return grid_of<openvdb::FloatGrid>(places, from, openvdb::GRID_FOG_VOLUME,
+        return grid_of<openvdb::FloatGrid>(lattice, from, openvdb::GRID_FOG_VOLUME,
                                            [&](std::size_t k) { return from.values[k]; });
-    return grid_of<openvdb::Vec3SGrid>(places, from, openvdb::GRID_UNKNOWN, [&](std::size_t k) {
+    return grid_of<openvdb::Vec3SGrid>(lattice, from, openvdb::GRID_UNKNOWN, [&](std::size_t k) {
         const float *v = from.values + 3 * k;
         return openvdb::Vec3s(v[0], v[1], v[2]);
     });
+}
+
+openvdb::GridPtrVec grids_of(const FathomVdbGrid &lattice, const FathomVdbNumbers *from,
+                             std::size_t fields) {
+    openvdb::GridPtrVec grids;
+    for (std::size_t i = 0; i < fields; ++i) grids.push_back(grid_of(lattice, from[i]));
+    return grids;
 }
 
 // A file has an identifier of 36 letters behind 21 bytes of its head, made at random. One of the
@@ -91,13 +97,14 @@ void name_by_content(std::string &bytes) {
 } // namespace
 
 extern "C" __attribute__((visibility("default"))) int
-fathom_write_volume(const FathomVdbGrid *grid, const FathomVdbNumbers *numbers,
+fathom_write_volume(const FathomVdbGrid *grid, const FathomVdbNumbers *numbers, std::size_t fields,
                     void (*take)(void *to, const char *bytes, std::size_t count), void *to,
                     char *why, std::size_t room) {
     try {
         openvdb::initialize();
         std::ostringstream stream(std::ios::binary);
-        openvdb::io::Stream(stream).write(numbers ? grids_of(*grid, *numbers) : grids_of(*grid));
+        openvdb::io::Stream(stream).write(fields > 0 ? grids_of(*grid, numbers, fields)
+                                                     : grids_of(*grid));
         std::string bytes = std::move(stream).str();
         name_by_content(bytes);
         take(to, bytes.data(), bytes.size());
