@@ -70,10 +70,10 @@ Scaled split(ir::Graph &graph, NodeId id, int depth = 0) {
 } // namespace
 
 // Fields that differ by a factor are analysed once.
-FieldBound Prover::bound_once(NodeId field, const Place &here) {
+FieldBound Prover::bound_once(NodeId field, const Place &here, bool own) {
     Budget budget;
     budget.instructions = options.field_instructions;
-    budget.most = 16 * options.field_instructions;
+    if (own) budget.most = leaf_instructions;
     const Scaled parts = split(graph, field);
     const double by = std::fabs(parts.by);
     if (here.zone || !parts.rest || !(by > 0) || !std::isfinite(by))
@@ -113,7 +113,7 @@ FieldBound Prover::bound(ShapeId id, NodeId field, const std::string &what, bool
         out.value = Interval::everything();
         return out;
     }
-    out = bound_once(field, here);
+    out = bound_once(field, here, scene.shapes[id].kind == ShapeKind::Leaf);
     if (!std::isfinite(out.lipschitz) && report_it) report_field(id, out, what);
     return out;
 }

@@ -40,8 +40,9 @@ struct Prover {
     std::deque<Derived> derived;      // the first is that of shapes that no one asks
     std::vector<std::uint32_t> known; // by shape: its place in `derived`
     std::vector<Place> places;
-    std::deque<Zone> zones;   // stable addresses
-    std::size_t deformed = 0; // how many shapes are twisted, bent, tapered or distorted
+    std::deque<Zone> zones;            // stable addresses
+    std::size_t leaf_instructions = 0; // of a field of one's own whose bound is loose, at most
+    std::size_t deformed = 0;          // how many shapes are twisted, bent, tapered or distorted
     bool told_of_work = false;
 
     Prover(ir::Scene &s, Diagnostics &d, const Options &o)
@@ -158,7 +159,7 @@ struct Prover {
     // max; else nothing.
     std::optional<ir::NodeId> expression(ir::ShapeId id, int depth = 0);
 
-    FieldBound bound_once(ir::NodeId field, const Place &here);
+    FieldBound bound_once(ir::NodeId field, const Place &here, bool own);
     FieldBound bound_written(ir::NodeId field, const Domain &domain, const Budget &budget);
     FieldBound bound_by_values(ir::NodeId field, const Domain &domain, const Budget &budget);
     // The bound that was found as a number, or, where that is worth it, as a formula of params.

@@ -7,6 +7,7 @@
 #include "ir/view.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -65,12 +66,19 @@ void Prover::run() {
     test_conditions();
     find_places();
     know_caches(); // before the shapes that read them
+    std::size_t leaves = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const Shape &shape = scene.shapes[ShapeId{i}];
+        leaves += shape.kind == ShapeKind::Leaf;
         deformed += shape.kind == ShapeKind::Map &&
                     (shape.map == MapKind::Twist || shape.map == MapKind::Bend ||
                      shape.map == MapKind::Taper || shape.map == MapKind::Distort);
     }
+    // Together they take an eighth of what the proof may.
+    const std::size_t each = options.work / 8 / std::max<std::size_t>(leaves, 1);
+    leaf_instructions =
+        options.field_instructions *
+        std::min<std::size_t>(std::bit_floor(each / options.field_instructions), 16);
     for (std::size_t i = 0; i < count; ++i) {
         constexpr std::size_t steps_of_a_shape = 50; // in time, not counted as work
         if (work.stop && work.stop->after(steps_of_a_shape)) work.left = 0;

@@ -282,6 +282,13 @@ TEST_CASE("honest scenes pass, however large") {
     }));
     passes("for i in 0..100000 {\n  sphere(0.1 + random(i) * 0.2)"
            ".translate([i % 100, random(i, 2) * 100, floor(i / 1000)])\n}\n");
+    // Fields of one's own whose bounds are far above what is true: more work would lower them.
+    passes("fn rope(p: vec3, k: float) -> float {\n  let c = cos(k * p.y)\n  let s = sin(k * p.y)\n"
+           "  length(abs(mat2([c, s], [-s, c]) * p.xz) - 0.15) - 0.14\n}\n" +
+           lines(40, [](int i) {
+               return fmt::format("implicit(p => rope(p, {}), within: ball(2)).translate(x: {})",
+                                  3 + 0.01 * i, 5 * i);
+           }));
 }
 
 TEST_CASE("an option raises each limit, and a wrong word for one is told") {
