@@ -148,11 +148,12 @@
 //   the same marks, and those that it passes over are not near enough.
 //   shadow = min(shadow, 1); result: shadow^2*(3 - 2*shadow)
 //
-// ESTIMATES, in scenes where some shape's bound is an estimate (`Frame::estimate`, the greatest):
-// distances to fractals are such, and hardly anywhere change their sign. So a ray has hit where
-// `nearing` samples in a row are within its tolerance, each nearer than the one before, which a ray that
-// passes an edge has seldom; and a light is covered by what is much nearer to the way to it than
-// the light is wide. In all other scenes the sign alone decides.
+// ESTIMATES, in scenes where some shape's bound is an estimate (`Frame::estimate`, the greatest bound of
+// all, by which at most a distance was divided): distances to fractals are such, and hardly anywhere
+// change their sign. So a ray has hit where `nearing` samples in a row are within its tolerance, each
+// nearer than the one before, which a ray that passes an edge has seldom; and a light is covered by
+// what is much nearer to the way to it than the light is wide. In all other scenes the sign alone
+// decides.
 //
 // UNDECIDED: shaded where the ray came to, as what it is nearest to.
 // MISS: color = background_function(dir); without one `background`.

@@ -228,9 +228,13 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
         frame.hi = vec_of(all.hi) + margin;
     }
     frame.unit_slope = scene.unit_slope;
-    for (const ShapeFact &fact : scene.facts)
-        if (fact.status == ProofStatus::Estimated)
-            frame.estimate = std::max({frame.estimate, 1.0, fact.lipschitz_sup});
+    double bound = 1;
+    bool estimated = false;
+    for (const ShapeFact &fact : scene.facts) {
+        estimated = estimated || fact.status == ProofStatus::Estimated;
+        if (std::isfinite(fact.lipschitz_sup)) bound = std::max(bound, fact.lipschitz_sup);
+    }
+    frame.estimate = estimated ? bound : 0;
     return frame;
 }
 

@@ -61,7 +61,9 @@ struct Frame {
                         // larger than the bounds)
     glm::dvec3 lo{}, hi{};
     bool unit_slope = false; // Scene::unit_slope
-    double estimate = 0;     // the greatest bound that is an estimate, at least 1; 0: there is none
+    // Where some shape's bound is an estimate, of which nothing is known: the greatest bound of all
+    // shapes, at least 1. Else 0.
+    double estimate = 0;
 };
 Frame frame_of(const Scene &scene, const View &view, int height);
 
