@@ -235,12 +235,15 @@ Slot Flattener::product(Scope &scope, NodeId id, Instruction out) {
     if (const auto larger = without_factors(scope, id)) return slot(scope, *larger);
     for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
     if (out.type != ir::Type::Float && !ir::is_vector(out.type)) return emit(scope, std::move(out));
-    if (const auto around = around_axis(context, id); around && cancelling.contains(around->angle))
-        out.around = around->rest
-                         ? Instruction::AroundAxis{slot(scope, around->vector), around->by,
-                                                   slot(scope, around->vanishing),
-                                                   slot(scope, around->rest), around->rest_by}
-                         : Instruction::AroundAxis{slot(scope, around->vector), around->by};
+    if (const auto around = around_axis(context, id);
+        around && cancelling.contains(around->angle)) {
+        out.around = {.vector = slot(scope, around->vector), .by = around->by};
+        if (around->rest) {
+            out.around->vanishing = slot(scope, around->vanishing);
+            out.around->rest = slot(scope, around->rest);
+            out.around->rest_by = around->rest_by;
+        }
+    }
     find_radial(scope, id, out);
     return emit_by_pieces(scope, id, std::move(out), {id});
 }
