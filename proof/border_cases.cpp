@@ -198,6 +198,7 @@ bool Cases::impossible(const Case &c, const Inequality &more) {
         if (atoms_[a].never_negative) all.push_back({reduced(sum, c), false});
     if (by_inverses_)
         for (Inequality &row : all) row.sum = cleared(row.sum);
+    add_sectors(all, c);
     const auto contradicted = [&] {
         std::vector<Product> positive;
         for (const Inequality &row : all)
@@ -230,7 +231,10 @@ bool Cases::never_negative(const Product &m) const {
 }
 
 bool Cases::solve_equality(Case &c) {
+    std::vector<Inequality> sectors;
+    add_sectors(sectors, c);
     std::vector<Sum> rows;
+    for (const Inequality &row : sectors) rows.push_back(row.sum);
     for (const Sum &sum : c.at_least_0) rows.push_back(cleared(reduced(sum, c)));
     for (const auto &[a, sum] : c.solved)
         if (atoms_[a].never_negative) rows.push_back(cleared(reduced(sum, c)));

@@ -118,6 +118,10 @@ class Cases {
     void add_pairs(std::vector<Inequality> &rows);
     bool never_negative(const Product &m) const;
 
+    // The angles at which a fold keeps a product of a turn and a point; its borders as rows.
+    std::optional<Interval> sector_of(NodeId product);
+    void add_sectors(std::vector<Inequality> &rows, const Case &c) const;
+
     // Of s >= 0 and -s >= 0: s = 0, if that can be solved.
     bool solve_equality(Case &c);
 

@@ -76,6 +76,12 @@ std::optional<Sum> Cases::unknown(NodeId id, int i) {
     }
     Atom about;
     about.never_negative = node.op == Op::Exp || node.op == Op::Exp2 || node.op == Op::Hash;
+    if (const auto angle = node.op == Op::MatMul ? sector_of(id) : std::nullopt) {
+        AtomKey point = key;
+        point.front() = -7.0, point[3] = 0;
+        about.sector =
+            Sector{i == 0 ? Sector::X : Sector::Y, atom_of(std::move(point), Atom{}), *angle};
+    }
     const ir::Graph::Reads read = graph_.reads(id);
     about.held = !read.point && !read.free_vars;
     return atom(atom_of(std::move(key), about));
@@ -125,6 +131,10 @@ std::optional<Sum> Cases::size_of(NodeId id, int i, const Sum &x) {
             Atom about;
             about.never_negative = true;
             about.square = multiply(atom(lead[0]), atom(lead[0]));
+            if (const auto &of = atoms_[lead[0]].sector; of && of->part == Sector::Y) {
+                about.sector = of;
+                about.sector->part = Sector::SizeOfY;
+            }
             const std::uint32_t a = atom_of({-2.0, double(lead[0])}, about);
             return add({}, reduced(atom(a), case_), std::fabs(c));
         }

@@ -11,6 +11,14 @@
 
 namespace fathom::proof {
 
+// A coordinate of a point that a fold keeps in a sector about an axis, or the second one's size.
+struct Sector {
+    enum Part : std::uint8_t { X, Y, SizeOfY };
+    Part part;
+    std::uint32_t of;   // one number for equal points
+    ir::Interval angle; // no wider than half a turn
+};
+
 struct LineAtom {
     bool never_negative = false;
     std::optional<Sum> square;         // of a root: what it is the root of
@@ -20,6 +28,7 @@ struct LineAtom {
     // Of a / d, where d is an atom: d, and a.
     std::optional<std::pair<std::uint32_t, Sum>> quotient;
     std::optional<Sum> inverse_of; // of 1 / b: b, of which the first number is 1, never 0
+    std::optional<Sector> sector;
 };
 
 // Do a and b differ nowhere where no row is below 0, by more than `granted` of their terms? All
