@@ -114,11 +114,13 @@ std::array<double, 3> some_point(const Cell &cell, Dice &dice) {
     return p;
 }
 
+constexpr double loose = 1.3; // a bound over the slope seen, from which on more work is worth it
+
 // Whether more than `limit` instructions are run for a bound that is above the slope seen: twice as
 // many, and so on; the last of them if that helped since `at_limit`, the bound at the limit before.
 bool goes_on(const Budget &budget, double bound, double seen, std::size_t &limit,
              double &at_limit) {
-    constexpr double loose = 1.3, helped = 0.97;
+    constexpr double helped = 0.97;
     const bool helps = limit < budget.most / 2 || bound < helped * at_limit;
     if (limit >= budget.most || bound < loose * seen || !helps) return false;
     limit *= 2;
@@ -263,10 +265,9 @@ Distances distances_of(const Zone &zone) {
     return out;
 }
 
-FieldBound search_bound(Flattening &context, const Ranges &ranges, NodeId field,
+FieldBound search_bound(Flattening &context, const Ranges &ranges, const Tape &tape,
                         const Domain &domain, const Budget &budget) {
     FieldBound out;
-    Tape tape = flatten(context, field);
     if (tape.too_large) {
         out.lipschitz = infinity;
         out.value = Interval::everything();
@@ -425,6 +426,51 @@ double search_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar
 
 } // namespace
 
+namespace {
+
+// A region turned about an axis by whatever angle: in what of it is the same then. Nothing where that
+// has no end.
+std::optional<Zone> turned_about(const Domain &domain, int axis) {
+    const std::size_t along = std::size_t(axis), u = (along + 1) % 3, v = (along + 2) % 3;
+    const auto is_same = [&](const Zone &zone) {
+        return zone.kind == ir::RegionKind::Tube
+                   ? zone.axis == axis
+                   : zone.kind == ir::RegionKind::Ball && zone.center[u] == Interval(0.0) &&
+                         zone.center[v] == Interval(0.0);
+    };
+    Zone out;
+    if (domain.zone && is_same(*domain.zone)) {
+        out = *domain.zone;
+    } else {
+        const Interval across = square(Interval(domain.box.p[u].magnitude())) +
+                                square(Interval(domain.box.p[v].magnitude()));
+        out.kind = ir::RegionKind::Tube;
+        out.axis = axis;
+        out.half[0] = sqrt(across).hi;
+        if (!out.half[0].finite()) return {};
+    }
+    if (domain.zone) {
+        out.less.clear();
+        std::ranges::copy_if(domain.zone->less, std::back_inserter(out.less), is_same);
+    }
+    return out;
+}
+
+// The bound that a field has as seen from coordinates that turn about an axis; nothing where it is
+// not seen to be of that kind.
+std::optional<double> unwound_bound(Flattening &context, const Ranges &ranges, NodeId field,
+                                    const Domain &domain, const Budget &budget) {
+    const Tape tape = flatten_unwound(context, field);
+    if (!tape.winds_about || tape.too_large) return {};
+    const auto zone = turned_about(domain, *tape.winds_about);
+    if (!zone) return {};
+    Cell box = outer_box(*zone);
+    box.p[std::size_t(*tape.winds_about)] = domain.box.p[std::size_t(*tape.winds_about)];
+    return search_bound(context, ranges, tape, Domain{box, &*zone}, budget).lipschitz;
+}
+
+} // namespace
+
 FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
                        const Domain &domain, const Budget &budget) {
     Question question(context, ranges, field, Wanted::Bound);
@@ -432,7 +478,25 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
     question.add(domain.zone);
     question.add(budget);
     return std::move(question).answer([&](Flattening &own, const Ranges &all, NodeId copy) {
-        return search_bound(own, all, copy, domain, budget);
+        const Tape tape = flatten(own, copy);
+        Budget first = budget;
+        first.most = 0;
+        FieldBound out = search_bound(own, all, tape, domain, first);
+        const auto is_loose = [&] {
+            return std::isfinite(out.lipschitz) && out.lipschitz > loose * out.sampled &&
+                   out.lipschitz > budget.enough && budget.most > 0;
+        };
+        // Of an angle that moves nothing is known, so that all slopes seen are those of any angle.
+        const ir::Graph::Reads reads = own.graph.reads(copy);
+        const bool moves = (reads.time || reads.params) && budget.most > 0;
+        if (is_loose() || (moves && std::isfinite(out.lipschitz)))
+            if (const auto less = unwound_bound(own, all, copy, domain, budget))
+                out.lipschitz = std::min(out.lipschitz, *less);
+        if (!is_loose()) return out;
+        const double unwound = out.lipschitz;
+        out = search_bound(own, all, tape, domain, budget);
+        out.lipschitz = std::min(out.lipschitz, unwound);
+        return out;
     });
 }
 

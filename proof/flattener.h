@@ -5,6 +5,7 @@
 #include "proof/rescaled.h"
 #include "proof/supports.h"
 #include "proof/tape.h"
+#include "proof/winding.h"
 
 #include <map>
 #include <optional>
@@ -32,6 +33,7 @@ struct Flattener {
     std::unordered_set<NodeId> stepped;    // angles that steps alone read
     std::unordered_set<NodeId> known_linear;
     std::map<std::pair<NodeId, bool>, RescaledNodes> met; // by factor, and whether it divides
+    std::optional<Winding> winding;
     int steps_of_pieces = 0;
     Supports supports{tape};
 
@@ -68,6 +70,8 @@ struct Flattener {
     }
     Slot emit(Scope &scope, Instruction out, Form form, const std::vector<NodeId> &args);
     Slot emit_plain(Scope &scope, NodeId id, Instruction out);
+    // Of a sine or cosine, where points turn about an axis.
+    Slot emit_unwound(Scope &scope, NodeId id, Instruction out);
 
     Slot flatten_node(Scope &scope, NodeId id);
 

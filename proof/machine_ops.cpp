@@ -41,6 +41,10 @@ void Machine::step(const Instruction &instruction) {
     if (instruction.around) hold_around(instruction);
     if (instruction.between) hold_between(instruction);
     if (instruction.along) hold_along(instruction);
+    if (instruction.stands_at) {
+        value_[tape_.first[instruction.out]] = *instruction.stands_at;
+        relative_[instruction.out] = infinity; // it was that of another value
+    }
     if (reads_values_) step.read();
     if (!bend_.empty()) bend_[instruction.out] = step.bend();
 }

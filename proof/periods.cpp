@@ -99,6 +99,8 @@ Periods periods_of(const Tape &tape, const ir::Graph &graph) {
                 if (in.form != Form::Plain) continue;
                 if (in.op == Op::Point)
                     w = c == axis ? Way{Way::Linear, 1} : Way{};
+                else if (in.stands_at) // of what is linear the gradient alone is left
+                    w = way(in, 0, c).kind == Way::Linear ? Way{} : way(in, 0, c);
                 else if (in.op == Op::Add)
                     w = add(way(in, 0, c), way(in, 1, c), 1);
                 else if (in.op == Op::Sub)

@@ -1,6 +1,7 @@
 // Flattening: nodes in schedule order, one scope a function body and a loop body.
 #include "proof/tape.h"
 
+#include "ir/passes/inline.h"
 #include "proof/borders.h"
 #include "proof/discontinuities.h"
 #include "proof/exact.h"
@@ -145,6 +146,21 @@ Slot Flattener::emit_plain(Scope &scope, NodeId id, Instruction out) {
     return emit(scope, std::move(out), Form::Plain, args_of(id));
 }
 
+Slot Flattener::emit_unwound(Scope &scope, NodeId id, Instruction out) {
+    if (!winding->waves.contains(id)) tape.too_large = true; // made since: of which angle?
+    const NodeId angle = graph.arg(id, 0);
+    const auto at = winding->angles.find(angle);
+    if (at == winding->angles.end()) return emit_plain(scope, id, std::move(out));
+    Instruction turned;
+    turned.op = Op::Add;
+    turned.type = ir::Type::Float;
+    turned.node = angle;
+    turned.args = {slot(scope, angle), slot(scope, graph.number(0))};
+    turned.stands_at = at->second;
+    out.args = {emit(scope, std::move(turned))};
+    return emit(scope, std::move(out));
+}
+
 Slot Flattener::flatten_node(Scope &scope, NodeId id) {
     const ir::Node node = graph[id]; // a copy: recognising a form may add nodes
     Instruction out;
@@ -156,6 +172,8 @@ Slot Flattener::flatten_node(Scope &scope, NodeId id) {
     out.stepped = stepped.contains(id);
     if (node.op == Op::Fract || node.op == Op::Mod)
         out.scatters = single_is_far_off(graph, graph.arg(id, 0));
+    if (winding && (node.op == Op::Sin || node.op == Op::Cos) && graph.reads(id).point)
+        return emit_unwound(scope, id, std::move(out));
     switch (look_of_op[node.op]) {
     case Look::Point: out.varies = true; return emit(scope, out);
     case Look::Call: return call(scope, id, ir::FunctionId{node.payload});
@@ -263,10 +281,15 @@ std::size_t Tape::length() const {
     return n;
 }
 
-Tape flatten(Flattening &context, NodeId root) {
+namespace {
+
+constexpr std::size_t max_nodes_unwound = 600;
+
+Tape flattened(Flattening &context, NodeId root, bool unwound) {
     Flattener flattener(context);
     if (const auto it = context.written.find(root); it != context.written.end()) root = it->second;
     root = written_out(context.graph, root); // forms are seen through calls
+    if (unwound) root = ir::without_loops(context.graph, root, max_nodes_unwound).root;
     root = with_half_waves(context.graph, with_squares_compared(context.graph, root));
     root = with_chosen_lengths(context.graph, root, context.work);
     const bool steps = has_steps(context.graph, root),
@@ -289,10 +312,20 @@ Tape flatten(Flattening &context, NodeId root) {
         }
         if (!flattener.cancelling.empty() || has_signed_roots) root = whole;
     }
+    if (unwound) {
+        flattener.winding = winding_of(context.graph, root);
+        if (!flattener.winding) return {};
+        flattener.tape.winds_about = flattener.winding->axis;
+    }
     Scope scope;
     scope.block = &flattener.tape.each;
     flattener.tape.result = flattener.slot(scope, root);
     return std::move(flattener.tape);
 }
+
+} // namespace
+
+Tape flatten(Flattening &context, NodeId root) { return flattened(context, root, false); }
+Tape flatten_unwound(Flattening &context, NodeId root) { return flattened(context, root, true); }
 
 } // namespace fathom::proof

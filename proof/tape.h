@@ -104,6 +104,7 @@ struct Instruction {
         double by = 1;
     };
     std::optional<Between> between;
+    std::optional<double> stands_at; // its value, whatever the argument's: an angle's (winding.h)
     NodeId node;
 };
 
@@ -126,6 +127,7 @@ struct Tape {
     bool grows = false;     // some values may leave single precision
     bool near = false;      // what cancels does so where no coordinate is above `near_enough` alone
     bool too_large = false; // the field was cut off while flattening; nothing may be concluded
+    std::optional<int> winds_about; // an axis: seen from coordinates that turn about it (winding.h)
     std::size_t length() const;
 };
 
@@ -159,5 +161,7 @@ struct Flattening {
 };
 
 Tape flatten(Flattening &context, NodeId root);
+// … as seen from coordinates that turn about an axis, where it can be (Tape::winds_about).
+Tape flatten_unwound(Flattening &context, NodeId root);
 
 } // namespace fathom::proof

@@ -167,7 +167,7 @@ void Step::look_back(int c) {
             for (int k = 0; k < size(a); ++k) narrow_size(a, k);
         return;
     }
-    if (in.form != Form::Plain || is_int()) return;
+    if (in.form != Form::Plain || is_int() || in.stands_at) return;
     const auto least = [&](int arg) { narrow(arg, c, {is.lo, infinity}); };
     const auto most = [&](int arg) { narrow(arg, c, {-infinity, is.hi}); };
     if (in.op == Op::Neg) narrow(0, c, -is);
