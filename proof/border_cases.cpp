@@ -16,6 +16,8 @@ namespace {
 
 constexpr int max_cases = 600, max_forks = 40;
 constexpr double rounding_of_squares = 1e-12; // what double precision loses
+constexpr double rounding_of_terms = 2e-8;    // what numbers of 9 digits lose (cases.cpp)
+constexpr double granted_to_terms = 5e-7;     // as in cases.cpp
 
 } // namespace
 
@@ -48,6 +50,7 @@ bool Cases::hold(const Case &given, int depth) {
     for (std::size_t i = 0; i < fork.ways.size(); ++i) {
         Case next = base;
         next.way[fork.at] = int(i);
+        if (!fork.ways[0].empty()) next.first[fork.at] = fork.ways[0][0];
         bool possible = true;
         for (const Sum &sum : fork.ways[i]) {
             const auto c = as_constant(sum);
@@ -68,7 +71,14 @@ std::optional<bool> Cases::attempt() {
         const auto u = value(claim_.u), v = u ? value(claim_.v) : std::nullopt;
         if (!v) return {};
         const Sum gap = cleared(add(*u, *v, -1));
-        if (const auto c = as_constant(gap); c && std::fabs(*c) > 1e-9) return true; // nowhere
+        if (const auto c = as_constant(gap); c && std::fabs(*c) > 1e-9) {
+            double terms = 0; // of which `add` takes a little for nothing, at any coordinate
+            for (const Sum *side : {&*u, &*v})
+                for (const auto &[m, k] : *side)
+                    terms = std::max(terms, m.empty() ? 0 : std::fabs(k));
+            if (std::fabs(*c) <= rounding_of_terms * near_enough * terms) return false;
+            return true; // nowhere
+        }
         if (!solve(gap)) return {};
         follow_roots(case_);
         case_.border_solved = true;
@@ -128,9 +138,35 @@ std::optional<bool> Cases::vectors_agree(int sides) {
 
 bool Cases::are_equal(const Sum &a, const Sum &b) {
     const Sum gap = cleared(add(a, b, -1));
-    if (is_small(gap, a) || is_small(gap, b)) return true;
+    if (is_rounding(gap, a, b)) return true;
     if (impossible(case_, {gap, true}) && impossible(case_, {add({}, gap, -1), true})) return true;
     return split_sizes_ && are_equal_on_line(a, b);
+}
+
+// Coordinates, and what is as large as these, may be rounding beside each other; what may itself be
+// large where its factor is small is no more than rounding beside its own two terms.
+bool Cases::is_rounding(const Sum &gap, const Sum &a, const Sum &b) const {
+    Sum of_coordinates;
+    for (const auto &[m, c] : gap) {
+        const bool large =
+            std::ranges::any_of(m, [&](std::uint32_t i) { return atoms_[i].may_be_large; });
+        if (!large) {
+            of_coordinates[m] = c;
+            continue;
+        }
+        const auto x = a.find(m), y = b.find(m);
+        const double own =
+            (x == a.end() ? 0 : std::fabs(x->second)) + (y == b.end() ? 0 : std::fabs(y->second));
+        if (std::fabs(c) > granted_to_terms * own) return false;
+    }
+    const auto without_large = [&](Sum sum) {
+        std::erase_if(sum, [&](const auto &term) {
+            return std::ranges::any_of(term.first,
+                                       [&](std::uint32_t i) { return atoms_[i].may_be_large; });
+        });
+        return sum;
+    };
+    return is_small(of_coordinates, without_large(a)) || is_small(of_coordinates, without_large(b));
 }
 
 bool Cases::are_equal_on_line(const Sum &a, const Sum &b) {
@@ -347,7 +383,7 @@ bool is_count(const Graph &graph, NodeId root) {
 }
 
 bool is_proved_alike(Graph &graph, const Claim &claim, Looked &looked) {
-    Cases attempt(graph, {}, looked);
+    Cases attempt(graph, {}, looked, near_parts(graph, claim));
     const bool holds = attempt.hold_alike(claim);
     looked.cases += attempt.count();
     return holds;
@@ -369,7 +405,7 @@ bool is_proved(Graph &graph, const Claim &claim, Looked &looked) {
             }
         return false;
     };
-    if (along({})) return true;
+    if (along(near_parts(graph, claim))) return true;
     if (const auto axes = axes_of(graph, claim); axes && along(axes)) return true;
     looked.near = near;
     return false;

@@ -55,6 +55,61 @@ std::optional<Axes> axes_along(const Vector &direction, const Vector &origin) {
 
 } // namespace
 
+namespace {
+
+// What is taken off coordinates of the point, by axis: of `p - a`, `p.xy - a` and `p.x - a`.
+struct Taken {
+    std::array<std::set<double>, 3> off;
+
+    void look_at(const Graph &graph, NodeId id) {
+        const Op op = graph[id].op;
+        if (op != Op::Sub && op != Op::Add) return;
+        for (int k = 0; k < 2; ++k) {
+            const NodeId of = graph.arg(id, k), number = graph.arg(id, 1 - k);
+            const bool swizzled = graph[of].op == Op::Swizzle;
+            const NodeId point = swizzled ? graph.arg(of, 0) : of;
+            if (!graph.is_constant(number) || graph[point].op != Op::Point) continue;
+            const auto &value = graph.constant_of(number).value;
+            for (int i = 0; i < ir::components(graph[of].type); ++i) {
+                const int axis = swizzled ? ir::swizzle_component(graph[of].payload, i) : i;
+                const double c = value[std::size_t(i)];
+                if (c != 0) off[std::size_t(axis)].insert(op == Op::Add ? -c : c);
+            }
+        }
+    }
+};
+
+} // namespace
+
+// Far from the origin the numbers of squares are large, and rounding beside them is no rounding of
+// the solid: there a claim is looked at from where its parts lie.
+std::optional<Axes> near_parts(const Graph &graph, const Claim &claim) {
+    constexpr double far = 2;
+    std::vector<NodeId> todo{claim.of, claim.u, claim.v};
+    std::set<NodeId> seen;
+    Taken taken;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        taken.look_at(graph, id);
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    Axes out{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {}};
+    bool any = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto &off = taken.off[i];
+        if (off.empty()) continue;
+        const double middle = (*off.begin() + *off.rbegin()) / 2;
+        if (std::fabs(middle) < far) continue;
+        out.origin[i] = *std::ranges::min_element(off, {}, [&](double x) {
+            return std::fabs(x - middle); // one of them, so that its own difference is exact
+        });
+        any = true;
+    }
+    return any ? std::optional(out) : std::nullopt;
+}
+
 std::optional<Axes> axes_of(const Graph &graph, const Claim &claim) {
     std::vector<NodeId> todo{claim.of, claim.u, claim.v};
     std::set<NodeId> seen;

@@ -30,6 +30,7 @@ struct Fork {
 
 struct Case {
     std::map<std::pair<NodeId, int>, int> way;
+    std::map<std::pair<NodeId, int>, Sum> first; // what the first way of these says is at least 0
     std::vector<std::pair<std::uint32_t, Sum>> solved;
     std::vector<Sum> at_least_0;
     bool border_solved = false;
@@ -45,6 +46,8 @@ struct Axes {
 };
 // Along a direction that is no axis, with which the claim's numbers multiply a point (`dot(p - a, d)`).
 std::optional<Axes> axes_of(const Graph &graph, const Claim &claim);
+// Along the coordinates' own axes, from an origin at the claim's parts; nothing where that is near.
+std::optional<Axes> near_parts(const Graph &graph, const Claim &claim);
 
 class Cases {
   public:
@@ -101,6 +104,7 @@ class Cases {
     bool is_of_border(NodeId id); // reads a number, no coordinate, that u or v reads
 
     bool are_equal(const Sum &a, const Sum &b);
+    bool is_rounding(const Sum &gap, const Sum &a, const Sum &b) const; // gap = a - b
 
     // Where all that is left hangs on one number.
     bool are_equal_on_line(const Sum &a, const Sum &b);
@@ -179,6 +183,10 @@ class Cases {
         PerSide = 1000
     };
     std::optional<int> way(NodeId id, int i, std::vector<std::vector<Sum>> ways);
+    std::pair<NodeId, int> place_of_way(NodeId id, int i); // on this side
+    // A root of a square is either of two numbers: the one of which the way that was gone speaks,
+    // though the square has been written otherwise since; nothing where that is not seen.
+    std::optional<Sum> root_as_met(NodeId at, int i, const Sum &root);
 
     std::optional<Sum> value(NodeId id, int i = 0);
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 namespace fathom::proof {
@@ -36,7 +37,9 @@ std::uint32_t Cases::atom_of(AtomKey key, Atom about) {
 Sum Cases::leaf(NodeId id, int i) {
     Atom about;
     if (axes_ && graph_[id].op == Op::Point && graph_[id].type == ir::Type::Vec3) {
-        about.range = Interval(-2 * near_enough, 2 * near_enough); // sqrt(3), and the origin
+        const bool near = std::ranges::all_of(axes_->origin,
+                                              [](double x) { return std::fabs(x) <= near_enough; });
+        if (near) about.range = Interval(-3 * near_enough, 3 * near_enough); // sqrt(3), the origin
         const auto k = static_cast<std::size_t>(i);
         Sum out = constant(axes_->origin[k]);
         for (std::size_t j = 0; j < 3; ++j)
@@ -76,6 +79,9 @@ std::optional<Sum> Cases::unknown(NodeId id, int i) {
     }
     Atom about;
     about.never_negative = node.op == Op::Exp || node.op == Op::Exp2 || node.op == Op::Hash;
+    constexpr ir::OpSet may_be_large{Op::Exp,  Op::Exp2, Op::Pow, Op::Div,
+                                     Op::Sinh, Op::Cosh, Op::Tan};
+    about.may_be_large = may_be_large[node.op];
     if (const auto angle = node.op == Op::MatMul ? sector_of(id) : std::nullopt) {
         AtomKey point = key;
         point.front() = -7.0, point[3] = 0;
@@ -102,12 +108,39 @@ bool Cases::reads(NodeId id, NodeId what) {
     return reads_[{id, what}] = out;
 }
 
-std::optional<int> Cases::way(NodeId id, int i, std::vector<std::vector<Sum>> ways) {
+std::pair<NodeId, int> Cases::place_of_way(NodeId id, int i) {
     if (side_ && reads(id, claim_.choice)) i += PerSide * (1 + *side_);
     if (turned_ && reads(id, claim_.comparison)) i += 10 * PerSide * (1 + *turned_);
-    if (const auto it = case_.way.find({id, i}); it != case_.way.end()) return it->second;
-    if (!fork_ && splits_) fork_ = Fork{{id, i}, std::move(ways)};
+    return {id, i};
+}
+
+std::optional<int> Cases::way(NodeId id, int i, std::vector<std::vector<Sum>> ways) {
+    const auto place = place_of_way(id, i);
+    if (const auto it = case_.way.find(place); it != case_.way.end()) return it->second;
+    if (!fork_ && splits_) fork_ = Fork{place, std::move(ways)};
     return {};
+}
+
+std::optional<Sum> Cases::root_as_met(NodeId at, int i, const Sum &root) {
+    const auto it = case_.first.find(place_of_way(at, i));
+    if (it == case_.first.end() || root.empty()) return root;
+    const Sum met = reduced(it->second, case_);
+    if (met.empty()) return met;
+    const auto like = [](const Sum &x, const Sum &y, double sign) { // two roots are far apart
+        double most = 0, apart = 0;
+        for (const auto &[m, c] : x) most = std::max(most, std::fabs(c));
+        for (const auto &[m, c] : add(x, y, -sign)) apart = std::max(apart, std::fabs(c));
+        return apart <= 0.01 * most;
+    };
+    for (const double sign : {1.0, -1.0})
+        if (like(root, met, sign)) return add({}, root, sign);
+    if (root.size() != 1 || met.size() != 1) return {};
+    Product more; // factors above 0 that the other has not
+    std::ranges::set_symmetric_difference(root.begin()->first, met.begin()->first,
+                                          std::back_inserter(more));
+    if (!std::ranges::all_of(more, [&](std::uint32_t a) { return atoms_[a].never_negative; }))
+        return {};
+    return add({}, root, root.begin()->second * met.begin()->second > 0 ? 1 : -1);
 }
 
 std::optional<Sum> Cases::value(NodeId id, int i) {
@@ -186,9 +219,10 @@ std::optional<Sum> Cases::root(NodeId at, NodeId below, int i) {
 std::optional<Sum> Cases::root_of(NodeId at, const Sum &x, int i, bool of_squares) {
     if (const auto c = as_constant(x)) return constant(*c > 0 ? std::sqrt(*c) : 0);
     const Sum sum = squares_known(x);
-    if (const auto s = root_of_square(sum)) return size_of(at, Lengths + i, *s);
-    if (const auto s = by_inverses_ ? root_over_inverses(sum) : std::nullopt)
-        return size_of(at, Lengths + i, *s);
+    auto s = root_of_square(sum);
+    if (!s && by_inverses_) s = root_over_inverses(sum);
+    if (s) s = root_as_met(at, Lengths + i, *s);
+    if (s) return size_of(at, Lengths + i, *s);
     for (std::uint32_t a = 0; a < atoms_.size(); ++a)
         if (atoms_[a].square)
             if (const double times = multiple_of(sum, *atoms_[a].square); times > 0)

@@ -12,6 +12,8 @@ namespace {
 
 // written: what is left where numbers of 9 digits cancel; single precision has 7 of them
 constexpr double rounding_of_cases = 1e-11, written = 5e-9, granted = 5e-7;
+// a root turns an error e into sqrt(e)
+constexpr double granted_to_squares = 1e-10;
 constexpr std::size_t max_terms_of_cases = 60, max_degree_of_cases = 8, max_inequalities = 160;
 
 void drop_rounding(Sum &a, double size) {
@@ -168,7 +170,7 @@ std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding, double
     }
 }
 
-bool is_sum_of_squares(const Sum &a) { return squares_in(a, granted).has_value(); }
+bool is_sum_of_squares(const Sum &a) { return squares_in(a, granted_to_squares).has_value(); }
 
 std::optional<std::pair<std::uint32_t, Sum>>
 solved_for_atom(const Sum &sum, const std::function<bool(std::uint32_t)> &may) {

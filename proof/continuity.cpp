@@ -21,6 +21,31 @@ namespace fathom::proof {
 // relative size.
 constexpr double rounding = 1e-12;
 
+// Is what is left of two polynomials no more than their rounding? Of products of coordinates, beside
+// their largest term; not without end: beside 1e13 y^8 a jump by 5 is one. What may itself be large
+// where its factor is small, as 1e-13 exp(30 + z), counts beside its own two terms.
+bool is_rounding(const Graph &graph, const Polynomial &rest, const Polynomial &p,
+                 const Polynomial &q) {
+    constexpr ir::OpSet may_be_large{Op::Exp,  Op::Exp2, Op::Pow, Op::Div,
+                                     Op::Sinh, Op::Cosh, Op::Tan};
+    constexpr std::size_t most_factors = 4;
+    double size = 0;
+    for (const auto &[m, c] : p) size = std::max(size, std::fabs(c));
+    const auto of = [](const Polynomial &sum, const Monomial &m) {
+        const auto it = sum.find(m);
+        return it == sum.end() ? 0 : std::fabs(it->second);
+    };
+    const double granted = rounding * std::clamp(size, 1e-30, 1e3);
+    return std::ranges::all_of(rest, [&](const auto &term) {
+        const auto &[m, c] = term;
+        const bool large = m.size() > most_factors || std::ranges::any_of(m, [&](NodeId f) {
+                               return may_be_large[graph[f].op];
+                           });
+        // inf - inf is no number, and not 0
+        return std::fabs(c) <= (large ? rounding * (of(p, m) + of(q, m)) : granted);
+    });
+}
+
 bool same(Graph &graph, NodeId a, NodeId b, Work *work) {
     if (a == b) return true;
     const ir::Node x = graph[a], y = graph[b];
@@ -39,14 +64,9 @@ bool same(Graph &graph, NodeId a, NodeId b, Work *work) {
     Expansion expansion(graph, work);
     auto p = expansion.of(a), q = expansion.of(b);
     if (!p || !q) return false;
-    double size = 0;
-    for (const auto &[m, c] : *p) size = std::max(size, std::fabs(c));
-    for (const auto &[m, c] : *q) (*p)[m] -= c;
-    // not without end: beside 1e13 y^8 a jump by 5 is one
-    const double granted = rounding * std::clamp(size, 1e-30, 1e3);
-    for (const auto &[m, c] : *p)
-        if (!(std::fabs(c) <= granted)) return false; // inf - inf is no number, and not 0
-    return true;
+    Polynomial rest = *p;
+    for (const auto &[m, c] : *q) rest[m] -= c;
+    return is_rounding(graph, rest, *p, *q);
 }
 
 namespace {
@@ -83,18 +103,14 @@ class SameWhereZero {
         const auto p = expansion_.of(a), q = expansion_.of(b);
         if (!p || !q) return false;
         Polynomial rest = *p;
-        double size = 0;
         for (const auto &[m, c] : *q) rest[m] -= c;
-        for (const auto &[m, c] : *p) size = std::max(size, std::fabs(c));
         // the multiple that leaves nothing of the zero's largest term
         const auto largest = std::ranges::max_element(
             zero_, {}, [](const auto &term) { return std::fabs(term.second); });
         if (largest == zero_.end()) return false;
         const double times = rest[largest->first] / largest->second;
         for (const auto &[m, c] : zero_) rest[m] -= times * c;
-        const double granted = rounding * std::clamp(size, 1e-30, 1e3);
-        return std::ranges::all_of(
-            rest, [&](const auto &term) { return std::fabs(term.second) <= granted; });
+        return is_rounding(graph_, rest, *p, *q);
     }
 
     Graph &graph_;
@@ -103,12 +119,63 @@ class SameWhereZero {
     Work &work_;
 };
 
+constexpr ir::OpSet is_step_of_arms{Op::Floor, Op::Ceil, Op::Round, Op::Trunc,
+                                    Op::Fract, Op::Mod,  Op::Atan2};
+
+std::vector<NodeId> steps_in(const Graph &graph, NodeId a, NodeId b) { // the outermost
+    std::vector<NodeId> todo{a, b}, out;
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second || !graph.reads(id).point) continue;
+        if (is_step_of_arms[graph[id].op])
+            out.push_back(id);
+        else
+            todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    return out;
+}
+
+// Is a step of these numbers, its arguments, continuous there?
+bool is_between_turns(const Graph &graph, Op op, const std::vector<NodeId> &args) {
+    constexpr double near = 1e-6;
+    if (!std::ranges::all_of(args, [&](NodeId arg) { return graph.is_constant(arg); }))
+        return false;
+    const ir::Constant &x = graph.constant_of(args[0]);
+    for (int i = 0; i < ir::components(x.type); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        if (op == Op::Atan2) { // y, x
+            if (std::fabs(x.value[k]) < near && graph.constant_of(args[1]).value[k] < near)
+                return false;
+            continue;
+        }
+        const double turns = op == Op::Mod ? x.value[k] / graph.constant_of(args[1]).value[k]
+                                           : x.value[k] - (op == Op::Round ? 0.5 : 0.0);
+        if (!(std::fabs(turns - std::round(turns)) > near)) return false;
+    }
+    return true;
+}
+
 // The arms for u = v: u replaced by v, v by u, or one atom of u - v by what the others make it.
 bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b, Work &work) {
+    const std::vector<NodeId> steps = steps_in(graph, a, b);
     auto agree = [&](NodeId from, NodeId to) {
         if (work.spent()) return false;
-        const ir::Substitution map{{from, to}};
+        ir::Substitution map{{from, to}};
         std::size_t visited = 0;
+        // A step may turn on the border itself, and what it is there is not what it is beside it.
+        for (const NodeId step : steps) {
+            std::vector<NodeId> args(graph.args(step).begin(), graph.args(step).end());
+            bool moved = false;
+            for (NodeId &arg : args) {
+                const NodeId there = ir::substitute(graph, arg, {{from, to}}, visited);
+                moved = moved || there != arg;
+                arg = there;
+            }
+            if (moved && !is_between_turns(graph, graph[step].op, args))
+                map[step] = graph.fresh_var(graph[step].type);
+        }
         const NodeId first = ir::substitute(graph, a, map, visited),
                      second = ir::substitute(graph, b, map, visited);
         work.take(2 * visited); // dearer than an operation on intervals

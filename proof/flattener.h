@@ -31,6 +31,13 @@ struct Flattener {
     std::size_t count = 0;
     std::unordered_set<NodeId> cancelling; // steps and choices
     std::unordered_set<NodeId> stepped;    // angles that steps alone read
+    std::unordered_set<NodeId> own;        // what the field is made of as it is given
+
+    // What a rewriting puts in the place of a step that cancels does too, where all uses of it are
+    // those of that step: what the field has besides, equal and so the same node, may not.
+    void cancel_like(NodeId step, NodeId made) {
+        if (cancelling.contains(step) && !own.contains(made)) cancelling.insert(made);
+    }
     std::unordered_set<NodeId> known_linear;
     std::map<std::pair<NodeId, bool>, RescaledNodes> met; // by factor, and whether it divides
     std::optional<Winding> winding;
@@ -77,7 +84,6 @@ struct Flattener {
 
     // Does the step that a wave is made with? x - m*round(x/m), held or not, x % m - m/2, …
     bool step_cancels(NodeId wave) const;
-    std::optional<NodeId> rounding_in(NodeId id, int depth = 0) const;
 
     void find_mean(Scope &scope, NodeId id, Instruction &out);
     void find_interpolation(Scope &scope, NodeId id, Instruction &out);

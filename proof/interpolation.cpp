@@ -116,10 +116,15 @@ class Interpolator {
             weights.push_back(axis.weight);
         }
         for (unsigned corner = 0; corner < 1u << axes_.size(); ++corner) {
-            Polynomial value;
-            for (const auto &[weight, factor] : *sum)
-                if ((weight & ~corner) == 0) add(value, factor, 1);
-            std::erase_if(value, [](const auto &term) { return std::fabs(term.second) < rounded; });
+            Polynomial value, sizes; // sizes: of all that was added up to each number
+            for (const auto &[weight, factor] : *sum) {
+                if ((weight & ~corner) != 0) continue;
+                add(value, factor, 1);
+                for (const auto &[product, by] : factor) sizes[product] += std::fabs(by);
+            }
+            std::erase_if(value, [&](const auto &term) {
+                return std::fabs(term.second) < rounded * sizes[term.first];
+            });
             out.corners.push_back(rebuilt(graph_, value));
         }
         out.steepness = steepness(weights);

@@ -42,6 +42,10 @@ Way repeats_after(Way a, double length) { // of f(x), f with that period
     return a;
 }
 Way blur(Way a) { return a.kind == Way::Linear ? Way{Way::Other, 0} : a; }
+// Of x and m, which is a number or NaN.
+Way remainder(Way x, double m, Way of_m) {
+    return m > 0 ? repeats_after(x, m) : meet_periods(blur(x), blur(of_m));
+}
 
 } // namespace
 
@@ -86,10 +90,7 @@ Periods periods_of(const Tape &tape, const ir::Graph &graph) {
                 w = everything;
                 if (in.form == Form::Wave) {
                     double m = constant(in, 1, c);
-                    if (m > 0)
-                        w = repeats_after(way(in, 0, c), m);
-                    else
-                        w = blur(way(in, 0, c));
+                    w = remainder(way(in, 0, c), m, way(in, 1, c));
                     continue;
                 }
                 if (in.form == Form::Square) {
@@ -147,7 +148,7 @@ Periods periods_of(const Tape &tape, const ir::Graph &graph) {
                         w = meet_periods(blur(way(in, 0, c)), blur(way(in, 1, c)));
                 } else if (in.op == Op::Mod) {
                     double m = constant(in, 1, c);
-                    w = m > 0 ? repeats_after(way(in, 0, c), m) : blur(way(in, 0, c));
+                    w = remainder(way(in, 0, c), m, way(in, 1, c));
                 } else if (in.op == Op::Fract)
                     w = repeats_after(way(in, 0, c), 1);
             }

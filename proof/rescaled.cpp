@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <unordered_set>
 
 namespace fathom::proof {
 namespace {
@@ -202,21 +203,22 @@ class Inward {
         if (const auto step = step_of(id)) pairs.emplace_back(*step, round);
         return graph_.sub(x, graph_.mul(m, turns));
     }
-    // A wave's own step, and none that its x is made with: what rounds in the second term, or the
-    // remainder that is a term.
+    // A wave's own step, and none that its x or its period is made with: what rounds in the second
+    // term, if only one thing does, or the remainder that is a term.
     std::optional<NodeId> step_of(NodeId sum) const {
-        if (const auto round = rounding_in(graph_.arg(sum, 1), 0)) return round;
+        std::unordered_set<NodeId> rounding;
+        find_rounding(graph_.arg(sum, 1), 0, rounding);
+        if (!rounding.empty())
+            return rounding.size() == 1 ? std::optional(*rounding.begin()) : std::nullopt;
         for (NodeId term : graph_.args(sum))
             if (graph_[term].op == Op::Mod || graph_[term].op == Op::Fract) return term;
         return {};
     }
-    std::optional<NodeId> rounding_in(NodeId id, int depth) const {
+    void find_rounding(NodeId id, int depth, std::unordered_set<NodeId> &found) const {
         constexpr OpSet through{Op::Mul, Op::Clamp};
-        if (graph_[id].op == Op::Round) return id;
-        if (depth > 3 || !through[graph_[id].op]) return {};
-        for (NodeId arg : graph_.args(id))
-            if (const auto found = rounding_in(arg, depth + 1)) return found;
-        return {};
+        if (graph_[id].op == Op::Round) found.insert(id);
+        if (depth > 3 || !through[graph_[id].op]) return;
+        for (NodeId arg : graph_.args(id)) find_rounding(arg, depth + 1, found);
     }
 
     // Of sums whose terms only make sense together; the node itself where it is none.

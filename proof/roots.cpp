@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t max_atoms_of_squares = 12;
 // Of the terms: what numbers in double precision lose. More would not do: where a sum of squares is
 // 0, its root turns an error e into sqrt(e).
-constexpr double granted_to_squares = 1e-12;
+constexpr double granted_to_squares = 3e-14;
 
 // A sum of products of at most two atoms each; the number is that of the empty product.
 struct Quadratic {

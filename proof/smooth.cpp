@@ -124,7 +124,8 @@ std::optional<Smooth> by_least(Graph &graph, NodeId extremum, const Product &bul
         if (by.factors.empty() && std::fabs(by.number - 1) < 1e-12)
             return Smooth{x, y, k, k, false, !graph.as_number(k), true, cubic};
         if (cubic) continue;
-        // c may be 1/(4 max(k, tiny)): no more than 1/(4 k), and the same for all points
+        // c may be 1/(4 max(k, tiny)): no more than 1/(4 k), and the same for all points; never 1/0
+        // where tiny is a number above 0
         for (NodeId f : rest.factors) {
             if (rest.factors.size() != 1 || rest.number != 1 || graph[f].op != Op::Div) continue;
             Product below;
@@ -133,8 +134,10 @@ std::optional<Smooth> by_least(Graph &graph, NodeId extremum, const Product &bul
             const NodeId most = below.factors[0];
             if (graph[most].op == Op::Max)
                 for (int i = 0; i < 2; ++i)
-                    if (same(graph, graph.arg(most, i), k))
-                        return Smooth{x, y, k, most, false, false, true};
+                    if (same(graph, graph.arg(most, i), k)) {
+                        const auto tiny = graph.as_number(graph.arg(most, 1 - i));
+                        return Smooth{x, y, k, most, false, !(tiny && *tiny > 0), true};
+                    }
         }
     }
     return {};

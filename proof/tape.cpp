@@ -188,7 +188,7 @@ Slot Flattener::flatten_node(Scope &scope, NodeId id) {
     case Look::Mix: return mix(scope, id, std::move(out));
     case Look::Root:
         if (const auto inward = root_inward(graph, id)) {
-            if (cancelling.contains(inward->from)) cancelling.insert(inward->choice);
+            cancel_like(inward->from, inward->choice);
             return slot(scope, inward->choice);
         }
         if (auto parts = norm_parts(graph, id)) {
@@ -285,6 +285,23 @@ namespace {
 
 constexpr std::size_t max_nodes_unwound = 600;
 
+// Loops' bodies too.
+std::unordered_set<NodeId> all_nodes_of(const ir::Graph &graph, NodeId root) {
+    std::unordered_set<NodeId> seen;
+    std::vector<NodeId> todo{root};
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!id || !seen.insert(id).second) continue;
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+        if (graph[id].op != Op::Loop) continue;
+        const ir::Loop &loop = graph.loop(ir::LoopId{graph[id].payload});
+        todo.insert(todo.end(), loop.next.begin(), loop.next.end());
+        todo.insert(todo.end(), {loop.count, loop.condition});
+    }
+    return seen;
+}
+
 Tape flattened(Flattening &context, NodeId root, bool unwound) {
     Flattener flattener(context);
     if (const auto it = context.written.find(root); it != context.written.end()) root = it->second;
@@ -297,11 +314,11 @@ Tape flattened(Flattening &context, NodeId root, bool unwound) {
     if (steps || choices) {
         NodeId whole = with_signed_roots(context.graph, root);
         const bool has_signed_roots = whole != root;
+        flattener.own = all_nodes_of(context.graph, whole);
         if (steps) {
             flattener.cancelling = cancelling_steps(context.graph, whole, context.work);
             const Turned turned = without_angles(context.graph, whole);
-            for (const auto &[wave, step] : turned.steps)
-                if (flattener.cancelling.contains(wave)) flattener.cancelling.insert(step);
+            for (const auto &[wave, step] : turned.steps) flattener.cancel_like(wave, step);
             whole = turned.root;
             flattener.stepped = stepped_angles(context.graph, whole, flattener.cancelling);
         }

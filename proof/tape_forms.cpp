@@ -113,21 +113,25 @@ Instruction::Turning Flattener::turning_of(Scope &scope, const LinearMap &map) {
 }
 
 bool Flattener::step_cancels(NodeId wave) const {
-    if (const auto rounded = rounding_in(graph.arg(wave, 1))) return cancelling.contains(*rounded);
+    bool any = false, all = true;
+    const auto meet = [&](NodeId step) { any = true, all = all && cancelling.contains(step); };
+    // x - m round(x/m), also held: a factor may be a clamp of the step, and m may be made of steps
+    // itself; which of these the wave's is does not matter where all cancel.
+    std::vector<NodeId> todo{graph.arg(wave, 1)};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        if (graph[id].op == Op::Round) meet(id);
+        if (graph[id].op == Op::Clamp) todo.push_back(graph.arg(id, 0));
+        if (graph[id].op == Op::Mul)
+            todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    if (any) return all;
     return std::ranges::any_of(graph.args(wave), [&](NodeId arg) {
         return (graph[arg].op == Op::Mod || graph[arg].op == Op::Fract) && cancelling.contains(arg);
     });
-}
-
-std::optional<NodeId> Flattener::rounding_in(NodeId id, int depth) const {
-    constexpr int max_depth = 8; // a factor may stand in both parts of another, again and again
-    if (graph[id].op == Op::Round) return id;
-    if (depth > max_depth) return {};
-    if (graph[id].op == Op::Clamp) return rounding_in(graph.arg(id, 0), depth + 1);
-    if (graph[id].op != Op::Mul) return {};
-    for (NodeId factor : graph.args(id))
-        if (const auto found = rounding_in(factor, depth + 1)) return found;
-    return {};
 }
 
 Slot Flattener::sum(Scope &scope, NodeId id, Instruction out) {
@@ -215,7 +219,7 @@ std::optional<NodeId> Flattener::without_factors(Scope &scope, NodeId id) {
                    rest = rescaled(graph, inverse, left, of_rest, context.work);
         if (!moved || !rest) continue;
         for (const auto &[old, made] : moved->made) {
-            if (cancelling.contains(old)) cancelling.insert(made);
+            cancel_like(old, made);
             if (const auto joined = context.joined.find(old);
                 joined != context.joined.end() && joined->second)
                 context.joined[made] = true;
