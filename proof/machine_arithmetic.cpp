@@ -19,13 +19,23 @@ void Step::negate() {
 
 void Step::add() {
     Interval sign = in.op == Op::Add ? 1.0 : -1.0;
-    for (int c = 0; c < n; ++c)
-        set(c, value(0, c) + sign * value(1, c), sum(grad(0, c), scaled(sign, grad(1, c))));
+    const auto is_0 = [&](int arg, int c) {
+        return value(arg, c) == Interval(0.0) && grad(arg, c) == none && !odd(arg, c);
+    };
+    bool odd_used = false; // but where 0 is added: `p - vec3(0, 2, 0)` of a p with an odd x
+    for (int c = 0; c < n; ++c) {
+        const bool stays = (odd(0, c) && is_0(1, c)) || (odd(1, c) && is_0(0, c));
+        odd_used = odd_used || (!stays && (odd(0, c) || odd(1, c)));
+        set(c, value(0, c) + sign * value(1, c), sum(grad(0, c), scaled(sign, grad(1, c))), stays);
+    }
     finish(norm(0) == 0                                       ? norm(1)
            : norm(1) == 0                                     ? norm(0)
            : (axes(0) & axes(1)) == 0 || in_other_group(1, 0) ? up(std::hypot(norm(0), norm(1)), 4)
                                                               : up(norm(0) + norm(1)),
-           any_odd);
+           odd_used);
+    if (machine.norm_[out] != infinity)
+        machine.cause_[out] =
+            machine.cause_[in.args[0]] ? machine.cause_[in.args[0]] : machine.cause_[in.args[1]];
 }
 
 void Step::product() {

@@ -108,6 +108,12 @@ NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
     }
     if (node.type == ir::Type::Float && (node.op == Op::Abs || node.op == Op::Sqrt))
         args[0] = under(args[0]);
+    if (ir::is_vector(node.type) && node.op == Op::Abs) {
+        std::vector<NodeId> parts;
+        for (int i = 0; i < ir::components(node.type); ++i)
+            parts.push_back(under(scalar(component_of(graph, args[0], i))));
+        args[0] = graph.make(Op::Make, node.type, parts);
+    }
     if (node.op == Op::MatMul && ir::is_vector(node.type))
         if (const auto product = written_product(args[0], args[1])) return *product;
     NodeId made = graph.make(node.op, node.type, args, node.payload);
