@@ -389,7 +389,9 @@ bool is_proved_alike(Graph &graph, const Claim &claim, Looked &looked) {
     return holds;
 }
 
-bool is_proved(Graph &graph, const Claim &claim, Looked &looked) {
+namespace {
+
+bool is_proved_as_it_is(Graph &graph, const Claim &claim, Looked &looked, double reach) {
     const bool near = looked.near;
     const auto along = [&](std::optional<Axes> axes) {
         bool met_held = false;
@@ -397,7 +399,8 @@ bool is_proved(Graph &graph, const Claim &claim, Looked &looked) {
             for (const bool sizes : {false, true}) {
                 if (inverses && !met_held) return false;
                 looked.near = near;
-                Cases attempt(graph, {.sizes = sizes, .inverses = inverses}, looked, axes);
+                Cases attempt(graph, {.sizes = sizes, .inverses = inverses, .reach = reach}, looked,
+                              axes);
                 const bool holds = attempt.hold(claim);
                 looked.cases += attempt.count();
                 met_held = met_held || attempt.met_held();
@@ -409,6 +412,14 @@ bool is_proved(Graph &graph, const Claim &claim, Looked &looked) {
     if (const auto axes = axes_of(graph, claim); axes && along(axes)) return true;
     looked.near = near;
     return false;
+}
+
+} // namespace
+
+bool is_proved(Graph &graph, const Claim &claim, Looked &looked) {
+    for (const Inside &inside : seen_from_inside(graph, claim))
+        if (is_proved_as_it_is(graph, inside.claim, looked, inside.reach)) return true;
+    return is_proved_as_it_is(graph, claim, looked, near_enough);
 }
 
 } // namespace fathom::proof

@@ -5,6 +5,7 @@
 #include "proof/work.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace fathom::proof {
 
@@ -35,6 +36,14 @@ struct Looked {
 // A number, or a comparison of such, that is made of signs, steps, truths and constants alone: it
 // turns only where one of these does.
 bool is_count(const ir::Graph &graph, ir::NodeId id);
+
+// The same claim for a vector that the point is read through as if it were the point: claims of which
+// each is enough. `reach`: what no coordinate of it is beyond, near enough to the origin (tape.h).
+struct Inside {
+    Claim claim;
+    double reach;
+};
+std::vector<Inside> seen_from_inside(ir::Graph &graph, const Claim &claim);
 
 // True is a proof; false is none. The second proves by what the sides are to each other alone, which
 // is less, and takes few cases whatever else the field has.

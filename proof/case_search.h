@@ -55,10 +55,11 @@ class Cases {
     // quotients by what is held as products with an inverse.
     struct Tries {
         bool sizes = false, inverses = false;
+        double reach = 1000; // no coordinate is beyond, of points that a proof has to hold for
     };
     Cases(Graph &graph, Tries tries, Looked &looked, std::optional<Axes> axes = {})
-        : graph_(graph), split_sizes_(tries.sizes), by_inverses_(tries.inverses), axes_(axes),
-          looked_(looked) {}
+        : graph_(graph), tries_(tries), split_sizes_(tries.sizes), by_inverses_(tries.inverses),
+          axes_(axes), looked_(looked) {}
 
     bool hold(const Claim &claim);
     // By what the sides are to each other alone (relation); no number is compared.
@@ -68,6 +69,7 @@ class Cases {
 
   private:
     Graph &graph_;
+    const Tries tries_;
     const bool split_sizes_, by_inverses_; // as of Tries
     const std::optional<Axes> axes_;
     Looked &looked_;

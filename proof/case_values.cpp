@@ -37,9 +37,10 @@ std::uint32_t Cases::atom_of(AtomKey key, Atom about) {
 Sum Cases::leaf(NodeId id, int i) {
     Atom about;
     if (axes_ && graph_[id].op == Op::Point && graph_[id].type == ir::Type::Vec3) {
-        const bool near = std::ranges::all_of(axes_->origin,
-                                              [](double x) { return std::fabs(x) <= near_enough; });
-        if (near) about.range = Interval(-3 * near_enough, 3 * near_enough); // sqrt(3), the origin
+        const double reach = tries_.reach;
+        const bool near =
+            std::ranges::all_of(axes_->origin, [&](double x) { return std::fabs(x) <= reach / 4; });
+        if (near) about.range = Interval(-2.5 * reach, 2.5 * reach); // sqrt(3) times it, the origin
         const auto k = static_cast<std::size_t>(i);
         Sum out = constant(axes_->origin[k]);
         for (std::size_t j = 0; j < 3; ++j)
@@ -51,7 +52,7 @@ Sum Cases::leaf(NodeId id, int i) {
     const ir::Graph::Reads read = graph_.reads(id);
     about.held = !read.point && !read.free_vars;
     met_held_ = met_held_ || about.held;
-    if (node.op == Op::Point) about.range = Interval(-near_enough, near_enough);
+    if (node.op == Op::Point) about.range = Interval(-tries_.reach, tries_.reach);
     if (node.op == Op::Param && looked_.ranges)
         about.range = looked_.ranges->params[node.payload][k];
     if (node.op == Op::Time && looked_.ranges) about.range = looked_.ranges->time;
