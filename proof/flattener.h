@@ -91,6 +91,7 @@ struct Flattener {
     Slot sum(Scope &scope, NodeId id, Instruction out);
 
     void find_radial(Scope &scope, NodeId id, Instruction &out);
+    void find_univariate(Scope &scope, NodeId id, Instruction &out);
     // A product or quotient by numbers whose inverses meet them in the rest (rescaled.h).
     std::optional<NodeId> without_factors(Scope &scope, NodeId id);
     Slot product(Scope &scope, NodeId id, Instruction out);

@@ -111,4 +111,59 @@ void Machine::hold_along(const Instruction &instruction) {
     hold_norm(out, up(times(by, norm_[vector]), 4));
 }
 
+namespace {
+
+// Of a polynomial, the lowest power first, and of its derivative over an interval: by Horner's rule
+// in its parts, whose hull is narrower than what the whole interval gives.
+struct OverInterval {
+    Interval value, slope;
+};
+OverInterval over(const std::vector<double> &by, Interval x) {
+    constexpr int most_parts = 16;
+    const bool wide = x.finite() && x.width() > 1e-3;
+    const int parts = wide ? most_parts : 1;
+    OverInterval out;
+    for (int part = 0; part < parts; ++part) {
+        Interval t = x;
+        if (parts > 1) {
+            t.lo = part == 0 ? x.lo : x.lo + x.width() * part / parts;
+            t.hi = part == parts - 1 ? x.hi : x.lo + x.width() * (part + 1) / parts;
+        }
+        Interval value = by.back(), slope = 0.0;
+        for (std::size_t i = by.size() - 1; i-- > 0;) {
+            slope = slope * t + value;
+            value = value * t + Interval(by[i]);
+        }
+        const Interval middle = t.middle(); // the mean value theorem
+        Interval there = by.back();
+        for (std::size_t i = by.size() - 1; i-- > 0;) there = there * middle + Interval(by[i]);
+        if (t.finite()) value = meet(value, there + slope * (t - middle));
+        out.value = part == 0 ? value : hull(out.value, value);
+        out.slope = part == 0 ? slope : hull(out.slope, slope);
+    }
+    return out;
+}
+
+} // namespace
+
+void Machine::hold_univariate(const Instruction &instruction) {
+    const auto &[of, by] = *instruction.univariate;
+    const Slot out = instruction.out;
+    if (norm_[out] == infinity) return;
+    double most = 0;
+    for (std::uint32_t i = 0; i < tape_.size[out]; ++i) {
+        const std::uint32_t from = tape_.first[of] + i, to = tape_.first[out] + i;
+        if (odd_[from]) return;
+        const OverInterval found = over(by, value_[from]);
+        most = std::max(most, found.slope.magnitude());
+        value_[to] = meet(found.value, value_[to]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Interval g = found.slope * grad_[from][k];
+            const Interval both{std::max(g.lo, grad_[to][k].lo), std::min(g.hi, grad_[to][k].hi)};
+            if (both.lo <= both.hi) grad_[to][k] = both;
+        }
+    }
+    hold_norm(out, up(times(most, norm_[of]), 4));
+}
+
 } // namespace fathom::proof

@@ -67,6 +67,7 @@ void Machine::need_args(const Instruction &in, std::vector<bool> &wanted) const 
     if (in.around && in.around->rest_by > 0)
         wanted[in.around->vanishing] = wanted[in.around->rest] = true;
     if (in.along) wanted[in.along->vector] = wanted[in.along->factor] = true;
+    if (in.univariate) wanted[in.univariate->of] = true;
     if (in.between) {
         wanted[in.between->vector] = true;
         for (const Slot s : in.between->corners) wanted[s] = true;

@@ -104,6 +104,12 @@ struct Instruction {
         double by = 1;
     };
     std::optional<Between> between;
+    // Of a product that is by component a polynomial of one number, the lowest power first.
+    struct Univariate {
+        Slot of = 0;
+        std::vector<double> by;
+    };
+    std::optional<Univariate> univariate;
     std::optional<double> stands_at; // its value, whatever the argument's: an angle's (winding.h)
     NodeId node;
 };

@@ -191,6 +191,65 @@ void Flattener::find_mean(Scope &scope, NodeId id, Instruction &out) {
                     mean->beyond};
 }
 
+namespace {
+
+// A vector or a number as a polynomial of another, by component.
+struct OfOne {
+    std::optional<NodeId> x; // none: a number
+    std::vector<double> by;
+};
+std::optional<OfOne> of_one(Graph &graph, NodeId id, int depth = 0) {
+    constexpr int max_depth = 10;
+    constexpr std::size_t max_powers = 10;
+    const ir::Node node = graph[id];
+    if (const auto c = number(graph, id)) return OfOne{{}, {*c}};
+    constexpr ir::OpSet sums{Op::Add, Op::Sub, Op::Neg};
+    const auto itself = [&] { return OfOne{id, {0, 1}}; };
+    if (depth > max_depth || (!sums[node.op] && node.op != Op::Mul)) return itself();
+    std::vector<OfOne> args;
+    for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end())) {
+        if (graph[a].type != node.type) return itself();
+        const auto arg = of_one(graph, a, depth + 1);
+        if (!arg) return {};
+        args.push_back(*arg);
+    }
+    OfOne out;
+    if (node.op == Op::Neg) {
+        out = args[0];
+        for (double &c : out.by) c = -c;
+        return out;
+    }
+    if (args[0].x && args[1].x && args[0].x != args[1].x) {
+        if (node.op == Op::Mul) return {};
+        return itself();
+    }
+    out.x = args[0].x ? args[0].x : args[1].x;
+    const std::size_t n = args[0].by.size(), m = args[1].by.size();
+    if (node.op == Op::Mul) {
+        if (n + m - 1 > max_powers) return {};
+        out.by.assign(n + m - 1, 0);
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t k = 0; k < m; ++k) out.by[i + k] += args[0].by[i] * args[1].by[k];
+        return out;
+    }
+    out.by.assign(std::max(n, m), 0);
+    for (std::size_t i = 0; i < n; ++i) out.by[i] += args[0].by[i];
+    for (std::size_t i = 0; i < m; ++i) out.by[i] += (node.op == Op::Add ? 1 : -1) * args[1].by[i];
+    return out;
+}
+
+} // namespace
+
+// f*f*f*(f*(f*6 - 15) + 10): by the rule for products f's parts are any numbers of its range.
+void Flattener::find_univariate(Scope &scope, NodeId id, Instruction &out) {
+    constexpr std::size_t least_powers = 4; // else the product says as much
+    const auto found = of_one(graph, id);
+    if (!found || !found->x || *found->x == id || found->by.size() < least_powers) return;
+    for (double c : found->by)
+        if (!std::isfinite(c)) return;
+    out.univariate = {slot(scope, *found->x), found->by};
+}
+
 void Flattener::find_radial(Scope &scope, NodeId id, Instruction &out) {
     if (const auto found = radial(graph, id))
         out.along = {slot(scope, found->vector), slot(scope, found->factor), found->divides};
@@ -249,6 +308,7 @@ Slot Flattener::product(Scope &scope, NodeId id, Instruction out) {
         }
     }
     find_radial(scope, id, out);
+    find_univariate(scope, id, out);
     return emit_by_pieces(scope, id, std::move(out), {id});
 }
 
