@@ -1,5 +1,5 @@
-// The walk: places from the root down, facts from the leaves up, and what every fact is told at its
-// end. The rules themselves stand by group beside it.
+// The walk: places from the root down (places.cpp), facts from the leaves up, and what every fact
+// is told at its end. The rules themselves stand by group beside it.
 #include "proof/prover.h"
 
 #include "base/single.h"
@@ -205,104 +205,6 @@ void Prover::fail(Derived &k) {
     k.failed = true;
     k.fact.lipschitz_sup = infinity;
     k.fact.lipschitz = graph.number(1);
-}
-
-// -- places
-
-Zone Prover::zone_of(const ir::Region &region) {
-    Zone zone;
-    zone.kind = region.kind;
-    zone.axis = region.axis;
-    if (region.center) zone.center = vector(region.center);
-    if (region.kind == ir::RegionKind::Box) {
-        Vec size = vector(region.size);
-        for (std::size_t i = 0; i < 3; ++i) zone.half[i] = abs(size[i]) * Interval(0.5);
-    } else if (region.size) {
-        zone.half[0] = number(region.size);
-    }
-    for (const ir::Region &less : region.less) zone.less.push_back(zone_of(less));
-    return zone;
-}
-
-void Prover::visit(ShapeId id, const Box &box, const Zone *zone, bool reported) {
-    Place &place = places[id.index];
-    if (!place.reached) {
-        place.box = box;
-        place.zone = zone;
-    } else {
-        place.box = ir::hull(place.box, box);
-        if (place.zone != zone) place.zone = nullptr;
-        place.shared = true;
-    }
-    place.reached = true;
-    place.reported = place.reported || reported;
-}
-
-void Prover::find_places() {
-    for (const ir::TopLevel &top : scene.top_level)
-        visit(top.shape, Box::everything(), nullptr, true);
-    if (scene.root) visit(scene.root, Box::everything(), nullptr, true);
-    for (std::size_t i = scene.shapes.size(); i-- > 0;) {
-        ShapeId id{i};
-        const Shape &shape = scene.shapes[id];
-        Place here = places[i];
-        if (!here.reached) continue;
-        for (ShapeId child : shape.children) {
-            switch (shape.kind) {
-            case ShapeKind::Within: {
-                zones.push_back(zone_of(scene.shapes.regions[shape.payload]));
-                Box region = from_cell(outer_box(zones.back()), shape.dims);
-                visit(child, ir::intersect(here.box, region), &zones.back(), here.reported);
-                break;
-            }
-            case ShapeKind::Map: {
-                Box box = Box::everything();
-                if (!everywhere(here.box)) {
-                    auto q = range_of(flattening, ranges, shape.args[0], to_cell(here.box));
-                    box = from_cell({{q[0], q[1], q[2]}}, scene.shapes[child].dims);
-                    if (shape.map == MapKind::Twist ||
-                        shape.map == MapKind::Bend) { // turns about an axis keep the radius
-                        int axis = shape.map == MapKind::Twist ? shape.axis
-                                                               : 3 - shape.axis - shape.towards;
-                        double r = radius_about(here.box, axis);
-                        for (std::size_t a = 0; a < 3; ++a)
-                            if (int(a) != axis)
-                                box.lo[a] = std::max(box.lo[a], -r),
-                                box.hi[a] = std::min(box.hi[a], r);
-                    }
-                }
-                visit(child, box, nullptr, here.reported);
-                break;
-            }
-            case ShapeKind::Repeat: visit(child, Box::everything(), nullptr, here.reported); break;
-            case ShapeKind::Extrude: visit(child, here.box, nullptr, here.reported); break;
-            case ShapeKind::Library: {
-                const ir::Library &library = scene.shapes.libraries[shape.payload];
-                bool taken = library.has_claims && library.claims.lipschitz;
-                visit(child, here.box, here.zone, here.reported && !taken);
-                break;
-            }
-            case ShapeKind::Empty:
-            case ShapeKind::Leaf:
-            case ShapeKind::Union:
-            case ShapeKind::Intersection:
-            case ShapeKind::Complement:
-            case ShapeKind::Xor:
-            case ShapeKind::Blend:
-            case ShapeKind::Seam:
-            case ShapeKind::Lerp:
-            case ShapeKind::PseudoNorm:
-            case ShapeKind::Offset:
-            case ShapeKind::Shell:
-            case ShapeKind::Displace:
-            case ShapeKind::Paint:
-            case ShapeKind::Repaint:
-            case ShapeKind::Mixed:
-            case ShapeKind::Instances:
-            case ShapeKind::Contract: visit(child, here.box, here.zone, here.reported); break;
-            }
-        }
-    }
 }
 
 // -- facts
