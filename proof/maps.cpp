@@ -28,6 +28,33 @@ void cap_moment_arms(Derived &k) {
     }
 }
 
+// More than trigonometry leaves of 0, and far less of a length than single precision keeps.
+constexpr double dust = 1e-12;
+
+// The sizes of a rotation's numbers, by row: how much of each axis the new ones can have.
+using Sizes = std::array<std::array<double, 3>, 3>;
+Sizes sizes_of(const std::array<Interval, 16> &matrix, std::size_t n) { // column-major
+    Sizes out{};
+    for (std::size_t to = 0; to < n; ++to)
+        for (std::size_t from = 0; from < n; ++from) {
+            const double size = matrix[from * n + to].magnitude();
+            out[to][from] = size <= dust ? 0 : std::min(size, 1.0);
+        }
+    return out;
+}
+
+// How much larger than a cube the box around the turned cube is, at most: 1 where axes are only
+// renamed.
+double around_turned_cube(const Sizes &sizes, std::size_t n) {
+    double most = 1;
+    for (const auto &row : sizes) {
+        int parts = 0;
+        for (double size : row) parts += size != 0;
+        if (parts > 1) most = std::max(most, up(row[0] + row[1] + row[2], 4));
+    }
+    return std::min(most, up(std::sqrt(double(n))));
+}
+
 } // namespace
 
 Derived Prover::know_translate(ShapeId id, Derived k) {
@@ -59,6 +86,15 @@ Derived Prover::know_rotate(ShapeId id, Derived k) {
     k.outer = everywhere(k.outer) ? k.outer : turned(k.outer, matrix, side);
     k.parts = everywhere(k.parts) ? k.parts : turned(k.parts, matrix, side);
     auto n = static_cast<std::size_t>(side);
+    const Sizes sizes = sizes_of(matrix, n);
+    // A box grown by t is, turned, in its turned box grown by more; but of an exact distance {f <
+    // t} is the solid grown by a ball.
+    const double swells = around_turned_cube(sizes, n);
+    const auto swell = [&](double &rate, bool exact) {
+        if (swells > 1 && rate > 0) rate = exact ? std::min(rate, 1.0) : up(rate * swells);
+    };
+    swell(k.growth_rate, k.exact_outside);
+    swell(k.outer_growth_rate, k.fact.kind == FieldKind::Exact);
     std::array<double, 3> moment_arm{infinity, infinity, infinity};
     std::array<bool, 3> symmetric{};
     if (flat) { // about z: the moment arm about z stays

@@ -25,6 +25,39 @@ void holds(const std::string &text, Point3 lo, Point3 hi, bool accepted = true) 
 
 } // namespace
 
+TEST_CASE("what grows as a box is turned with its corners") {
+    const std::string cube = "(box([2,9,9]) & box([9,2,9]) & box([9,9,2]))",
+                      square = "(rectangle([2,9]) & rectangle([9,2]))";
+    const auto reach = [](const std::string &text) {
+        INFO(text);
+        const driver::Compilation made = compiled(text);
+        REQUIRE(!made.diagnostics.has_errors());
+        return made.scene.bounds;
+    };
+    for (const double angle : {0.0, 10.0, 30.0, 45.0, 60.0, 90.0, 180.0}) {
+        const double u = angle / 180 * 3.14159265358979, c = std::cos(u), s = std::sin(u);
+        const double least = 2 * (std::fabs(c) + std::fabs(s)); // of the corner (2, 2)
+        for (const std::string &text :
+             {fmt::format("{}.rotate({}deg, axis: Z).offset(1)", cube, angle),
+              fmt::format("complement(complement({}).rotate({}deg, axis: Z).offset(-1))", cube,
+                          angle),
+              fmt::format("{}.rotate({}deg).extrude(9).offset(1)", square, angle),
+              fmt::format("union {{ for i in 0..40 {{ {}.rotate({}deg + 1e-9*i, axis: Z)"
+                          ".translate(x: 1e-9*i) }} }}.offset(1)",
+                          cube, angle)}) {
+            const ir::Box box = reach(text);
+            CHECK(box.hi[0] >= least - 1e-5);
+            CHECK(box.lo[1] <= -least + 1e-5);
+        }
+        // no more where axes are only renamed, and of what is exact
+        const std::string turn = fmt::format(".rotate({}deg, axis: Z).offset(1)", angle);
+        if (std::fmod(angle, 90) == 0) CHECK(reach(cube + turn).hi[0] < 2.001);
+        CHECK(reach("box(2)" + turn).hi[0] < least / 2 + 1.001);
+    }
+    const ir::Box all = reach(cube + ".rotate(54.7356deg, axis: [1, -1, 0]).offset(1)");
+    CHECK(std::max({all.hi[0], all.hi[1], all.hi[2]}) >= 2 * std::sqrt(3.0) - 1e-3);
+}
+
 TEST_CASE("a region in a region is asked where its nearest points are") {
     for (const std::string around : {"aabb([5, -3, -3], [6, 3, 3])",
                                      "aabb([0.9, -3, -3], [3, 3, 3])", "ball(0.5, at: [2, 0, 0])",

@@ -361,6 +361,7 @@ TEST_CASE("turns within turns do not inflate the bounds") {
                     << tall.lo[2] << ".." << tall.hi[2]);
     CHECK(tall.lo[1] <= 0);
     CHECK(tall.hi[1] >= 1 + std::cos(0.6));
-    CHECK(tall.hi[1] <= reach + 0.5);
+    // A blend of what was turned adds more than its radius: the corners of what grew turn outward.
+    CHECK(tall.hi[1] <= reach + 0.7);
     CHECK(std::max(-tall.lo[0], tall.hi[0]) <= reach);
 }
