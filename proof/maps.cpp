@@ -159,6 +159,16 @@ Derived Prover::know_fold(ShapeId id, Derived k) {
     // What lies within the fold's image may have copies: the preimage of the box.
     Box preimage = fold_preimage(shape.args[0], k.fact.bounds);
     k.fact.bounds = preimage;
+    // What a gradient points away from may lie behind the mirror, too, and of an elongation's
+    // gradient in its flat part a mean of a part's and the mirrored part's is left.
+    const int n = ir::components(graph[shape.args[0]].type);
+    for (int i = 0; i < n && !k.parts.empty(); ++i) {
+        const auto a = static_cast<std::size_t>(i);
+        const NodeId c = in_one_form(graph, component_of(graph, shape.args[0], i));
+        if (c == graph.component(graph.point(graph[shape.args[0]].type), i)) continue;
+        const double r = Interval(k.parts.lo[a], k.parts.hi[a]).magnitude();
+        k.parts.lo[a] = -r, k.parts.hi[a] = r;
+    }
     k.parts = fold_preimage(shape.args[0], k.parts);
     k.outer = everywhere(k.outer) ? k.outer : Box::everything();
     if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;

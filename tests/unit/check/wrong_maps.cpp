@@ -75,3 +75,13 @@ TEST_CASE("a region in a region is asked where its nearest points are") {
           ".within(aabb([5, -3, -3], [6, 3, 3])).offset(5)",
           {-3, -3, -3}, {8, 3, 3});
 }
+
+TEST_CASE("lever arms of what a fold mirrors are those of what lies behind it, too") {
+    for (const double at : {-5.0, -1.0, 2.0})
+        for (const std::string fold : {"turnaround(X)", "elongate([1, 0, 0])"})
+            for (const std::string turn :
+                 {"twist(1)", "bend(0.3, axis: Y, towards: X)", "taper(0.4, from: -1, to: 1)"})
+                holds(fmt::format("sphere(1).translate(x: {}).{}.{}.offset({})", at, fold, turn,
+                                  std::max(-at - 0.5, 0.1)),
+                      {-6, -3, -6}, {6, 3, 6}, false);
+}
