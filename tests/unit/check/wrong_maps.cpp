@@ -85,3 +85,16 @@ TEST_CASE("lever arms of what a fold mirrors are those of what lies behind it, t
                                   std::max(-at - 0.5, 0.1)),
                       {-6, -3, -6}, {6, 3, 6}, false);
 }
+
+TEST_CASE("what is deformed in its own box is asked there, whatever the region") {
+    const std::string steep =
+        "implicit(p => (length(p - [0, 3.5, 0]) - 0.5)*(1 + 4*clamp(p.y - 2, 0, 2)))";
+    for (const std::string turn :
+         {"twist(0.2)", "twist(0.2, axis: Z)", "bend(0.1, axis: Y, towards: X)",
+          "taper(0.8, from: -3, to: 5)", "distort(p => p + [0.2*sin(p.y), 0, 0])"})
+        for (const std::string region : {"tube(X, 1)", "tube(Z, 1)", "aabb([-1,-1,-1], [1,1,1])",
+                                         "aabb([-9,-1,-9], [9,30,9])"})
+            for (const std::string by : {"0.1", "4"})
+                holds(fmt::format("{}.{}.offset({}).within({})", steep, turn, by, region),
+                      {-2, -2, -2}, {2, 6, 2}, false);
+}
