@@ -1,6 +1,6 @@
 // With f the field as it was, g its gradient at q, and n >= |g|, the deformed field's gradient is,
 // up to a turn,
-//   twist about a by rate k:   g + k m e_a,              m = (q x g)_a
+//   twist about a by rate k:   g - k m e_a,              m = (q x g)_a
 //   bend about a by rate k:    g + k m e,                e a unit vector across a
 //   taper by c(q_a):           (g across a, c g_a + c'(f - g.q across a))
 // So no angle and no quotient has to be followed: intervals for q, f and g are all that is needed,
@@ -73,7 +73,7 @@ double slope_in(Machine &machine, const Deformation &d, const Cell &q) {
     }
     Interval by = 1, add;
     if (d.map == MapKind::Twist) {
-        add = d.rate * (q.p[u] * g[v] - q.p[v] * g[u]);
+        add = d.rate * (q.p[v] * g[u] - q.p[u] * g[v]); // turned back (ir/maps.h)
     } else {
         const Section here = section(d, q.p[a]);
         by = here.factor;

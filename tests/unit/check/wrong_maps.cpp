@@ -98,3 +98,24 @@ TEST_CASE("what is deformed in its own box is asked there, whatever the region")
                 holds(fmt::format("{}.{}.offset({}).within({})", steep, turn, by, region),
                       {-2, -2, -2}, {2, 6, 2}, false);
 }
+
+TEST_CASE("a twist's measured bound has the twist's sign") {
+    // a wall that leans along the axis as a screw does, with or against the twist
+    const std::array<std::string, 3> names{"x", "y", "z"};
+    for (std::size_t a = 0; a < 3; ++a)
+        for (const double rate : {2.0, -2.0})
+            for (const double lean : {2.0, -2.0}) {
+                const std::string w = names[a], u = names[(a + 1) % 3], v = names[(a + 2) % 3];
+                const std::string wall = fmt::format(
+                    "implicit(p => max(0.5*(p.{0} + {3}*clamp(p.{2}, -0.3, 0.3)*clamp(p.{1}, -3, "
+                    "3)), max(abs(p.{2}) - 0.2, length([p.{0}, p.{1}]) - 2)))",
+                    u, v, w, lean);
+                const std::string axis(1, "XYZ"[a]);
+                holds(fmt::format("{}.twist({}, axis: {}).offset(0.01)", wall, rate, axis),
+                      {-2.5, -2.5, -2.5}, {2.5, 2.5, 2.5});
+                holds(fmt::format("{}.twist({}, axis: {}).taper(0.8, axis: {}, from: -0.2, to: "
+                                  "0.2).offset(0.01)",
+                                  wall, rate, axis, axis),
+                      {-2.5, -2.5, -2.5}, {2.5, 2.5, 2.5}, false);
+            }
+}
