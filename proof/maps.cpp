@@ -103,9 +103,9 @@ Derived Prover::know_rotate(ShapeId id, Derived k) {
     }
     for (std::size_t to = 0; to < n; ++to)
         for (std::size_t from = 0; from < n; ++from) {
-            // Column `from` is +-e_to: that axis is only renamed, for all params. Trigonometry
-            // leaves 1e-16; a moment arm changes by less than its rounding.
-            bool axis = matrix[from * n + to].mignitude() > 1 - 1e-12;
+            // Alone in its row, it is +-1: that axis is only renamed, for all params. Near 1 is not
+            // enough, as 1 - t^2/2 is for a turn by t.
+            const bool axis = sizes[to][(from + 1) % 3] == 0 && sizes[to][(from + 2) % 3] == 0;
             if (!axis) continue;
             if (side == 3) moment_arm[to] = up(k.fact.moment_arm[from], 4);
             symmetric[to] = k.fact.symmetric[from];

@@ -119,3 +119,29 @@ TEST_CASE("a twist's measured bound has the twist's sign") {
                       {-2.5, -2.5, -2.5}, {2.5, 2.5, 2.5}, false);
             }
 }
+
+TEST_CASE("an axis is renamed by whole quarter turns, and not by nearly none") {
+    const auto bound = [](const std::string &text) {
+        INFO(text);
+        const driver::Compilation made = compiled(text);
+        CHECK(!made.diagnostics.has_errors());
+        return made.scene.facts[made.scene.root.index].lipschitz_sup;
+    };
+    const std::string rod = "capsule([-20, 0, 0], [20, 0, 0], 0.002)";
+    for (const int quarters : {0, 1, 2, 3, 4, 40, -7})
+        for (const std::string axis : {"Y", "Z"}) {
+            const std::string along = quarters % 2 == 0 ? "X" : axis == "Y" ? "Z" : "Y";
+            CHECK(bound(fmt::format("{}.rotate({}deg, axis: {}).twist(50, axis: {})", rod,
+                                    90 * quarters, axis, along)) < 1.06);
+        }
+    for (const double angle : {1.4e-6, -1.4e-6, 1e-7, 1e-9}) {
+        const double s = 50 * (20 * std::fabs(angle) + 0.002);
+        const std::string turned = fmt::format("{}.rotate({}, axis: Z)", rod, angle);
+        CHECK(bound(turned + ".twist(50, axis: X)") >= (s + std::sqrt(s * s + 4)) / 2 - 1e-6);
+    }
+    // copies' neighbours fit where the motif is its own mirror image
+    CHECK(!compiled("box([1, 0.5, 1]).rotate(180deg, axis: Z).repeat([1, 0, 0])")
+               .diagnostics.has_errors());
+    holds("box([1000, 0.0005, 1]).rotate(1.4e-6, axis: Z).repeat([1000, 0, 0])",
+          {499.9, -0.003, -0.1}, {500.1, 0.003, 0.1}, false);
+}
