@@ -30,14 +30,17 @@ struct LeafRewriter {
             !g.is_constant(shape.args[2]))
             return {};
         const auto &n = g.constant_of(shape.args[2]).value;
-        auto &[at, along] = line;
+        const auto [at, along, left] = line;
         switch (shape.map) {
-        case ir::MapKind::Translate: return {{at[0] - n[0], at[1] - n[1]}, along};
+        case ir::MapKind::Translate: return {{at[0] - n[0], at[1] - n[1]}, along, left};
         case ir::MapKind::Scale:
-            return {{at[0] / n[0], at[1] / n[1]}, {along[0] / n[0], along[1] / n[1]}};
+            return {{at[0] / n[0], at[1] / n[1]},
+                    {along[0] / n[0], along[1] / n[1]},
+                    left != (n[0] * n[1] < 0)};
         case ir::MapKind::Rotate: // by the transposed matrix, whose columns are n[0..1] and n[2..3]
             return {{n[0] * at[0] + n[1] * at[1], n[2] * at[0] + n[3] * at[1]},
-                    {n[0] * along[0] + n[1] * along[1], n[2] * along[0] + n[3] * along[1]}};
+                    {n[0] * along[0] + n[1] * along[1], n[2] * along[0] + n[3] * along[1]},
+                    left != (n[0] * n[3] < n[1] * n[2])};
         case ir::MapKind::MirrorFold:
         case ir::MapKind::Revolve:
         case ir::MapKind::Twist:

@@ -10,13 +10,15 @@
 
 namespace fathom::typecheck {
 
-// A line of the plane: a point of it, and its direction (0: there is none, or it is not known).
+// A line of the plane: a point of it, and its direction (0: there is none, or it is not known). One
+// side of it is meant: that to the right, or, below maps that mirror, to the left.
 struct Line {
     std::array<double, 2> at{}, along{};
+    bool left = false;
     bool known() const { return along[0] != 0 || along[1] != 0; }
     friend bool operator==(const Line &, const Line &) = default;
     friend bool operator<(const Line &a, const Line &b) {
-        return std::tie(a.at, a.along) < std::tie(b.at, b.along);
+        return std::tie(a.at, a.along, a.left) < std::tie(b.at, b.along, b.left);
     }
 };
 

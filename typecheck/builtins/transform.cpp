@@ -61,8 +61,9 @@ static Value fold_shape_call(Interpreter &ev, const CallSite &site, std::vector<
     return added(ev, ir::folded(ev.scene.graph, *s, *q), site, args[0].size);
 }
 
-// The profile with the edges that lie on the line left out of its polygons' surfaces:
-// `open(corners, kept)` makes such a polygon, kept[i] whether the edge to corner i counts.
+// The profile with the edges that lie on the line left out of the surfaces of polygons that lie on
+// the side of it that is asked: `open(corners, kept)` makes such a polygon, kept[i] whether the edge
+// to corner i counts.
 static ir::ShapeId opened(Interpreter &ev, ir::ShapeId profile, Line axis, const Value &open,
                           Span place_of_call) {
     return rewrite_leaves(
@@ -71,17 +72,14 @@ static ir::ShapeId opened(Interpreter &ev, ir::ShapeId profile, Line axis, const
             const auto found = ev.corners.find(
                 ev.scene.shapes[base].children.empty() ? base : ev.scene.shapes[base].children[0]);
             if (found == ev.corners.end() || !below.axis.known()) return base;
-            // Turned and moved so that the line is the y axis and the polygon lies to its right.
+            // Turned and moved so that the line is the y axis and the side that is asked lies to
+            // its right.
             const std::array<double, 2> at = below.axis.at, along = below.axis.along;
-            const double length = std::hypot(along[0], along[1]);
-            std::array<double, 2> up{along[0] / length, along[1] / length};
-            double size = 0, farthest = 0;
-            for (const auto &c : found->second) {
-                const double x = (c[0] - at[0]) * up[1] - (c[1] - at[1]) * up[0];
+            const double length = std::hypot(along[0], along[1]) * (below.axis.left ? -1 : 1);
+            const std::array<double, 2> up{along[0] / length, along[1] / length};
+            double size = 0;
+            for (const auto &c : found->second)
                 size = std::max({size, std::fabs(c[0] - at[0]), std::fabs(c[1] - at[1])});
-                if (std::fabs(x) > std::fabs(farthest)) farthest = x;
-            }
-            if (farthest < 0) up = {-up[0], -up[1]};
             std::vector<Value> corners, kept;
             bool all = true, before = false;
             const auto place = [&](const std::array<double, 2> &c) {
@@ -96,6 +94,7 @@ static ir::ShapeId opened(Interpreter &ev, ir::ShapeId profile, Line axis, const
                 const bool counts = x != 0 || !before;
                 before = x == 0;
                 all = all && counts;
+                if (x < 0) return base; // beyond an opened edge the solid would go on
                 corners.push_back(vec(2, {x, y, 0, 0}));
                 kept.push_back(boolean(counts));
             }

@@ -145,3 +145,33 @@ TEST_CASE("an axis is renamed by whole quarter turns, and not by nearly none") {
     holds("box([1000, 0.0005, 1]).rotate(1.4e-6, axis: Z).repeat([1000, 0, 0])",
           {499.9, -0.003, -0.1}, {500.1, 0.003, 0.1}, false);
 }
+
+TEST_CASE("a profile's edges on the axis are opened where the axis has it on one side") {
+    // The flat shape's sign is the turned one's, on the side that is asked.
+    for (const auto &[profile, offset] : std::vector<std::pair<std::string, double>>{
+             {"polygon([[-1,-1],[0,-1],[0,1],[1,1],[1,-2],[-1,-2]])", 0},
+             {"polygon([[-2,0],[0,0],[0,1],[1,1],[1,-1],[-2,-1]])", 0},
+             {"polygon([[-2,0],[-0.5,0],[-0.5,1],[1,1],[1,-1],[-2,-1]])", 0.5},
+             {"(polygon([[0,-1],[0,1],[-1,1],[-1,-1]]) | polygon([[0,2],[1,2],[1,3],[0,3]]))", 0},
+             {"polygon([[0,-1],[0,1],[-1,1],[-1,-1]]).reflect([1,0])", 0},
+             {"polygon([[0,-1],[0,1],[-1,1],[-1,-1]]).scale([-1,1])", 0},
+             {"polygon([[0,-1],[0,1],[1,1],[1,-1]]).reflect([0,1])", 0},
+             {"polygon([[1,-1],[1,1],[0,1],[0,-1]]).reflect([1,0]).translate(x: 1)", 0},
+             {"polygon([[0,0],[1,0],[1,1],[0,1]]).rotate(90deg).translate(x: 1)", 0},
+             {"polygon([[0,-1],[1,0],[0,1]])", 0}}) {
+        const std::string text = fmt::format("{}.revolve({})", profile, offset);
+        holds(text, {-3, -3, -3}, {3, 4, 3});
+        Sampler solid(compiled(text).scene), flat(compiled(profile + ".extrude(100)").scene);
+        std::vector<Point3> there, here;
+        for (int i = 0; i < 4000; ++i) {
+            const Point3 p = solid.in_box({0, -3, 0}, {3, 4, 6.28});
+            there.push_back({p[0] * std::cos(p[2]), p[1], p[0] * std::sin(p[2])});
+            here.push_back({p[0] - offset, p[1], 0});
+        }
+        const std::vector<float> a = solid.values(there), b = flat.values(here);
+        int different = 0;
+        for (std::size_t i = 0; i < a.size(); ++i)
+            different += a[i] * b[i] < 0 && std::fabs(a[i]) > 1e-3 && std::fabs(b[i]) > 1e-3;
+        CHECK(different == 0);
+    }
+}
