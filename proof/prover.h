@@ -151,6 +151,7 @@ struct Prover {
 
     // What values the raw field may have in a box of its own space; and how far from 0 they are.
     Interval values(ir::ShapeId id, const Cell &cell, int depth = 0);
+    Interval own_values(ir::ShapeId id, const Cell &cell, int depth); // as if proved everywhere
     double magnitude(ir::ShapeId id, const Box &box);
     Box extent(ir::ShapeId id); // holds the solid, wherever its field's values say so
     void find_extent(ir::ShapeId id, Derived &k); // sets the box of what has none

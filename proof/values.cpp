@@ -18,6 +18,23 @@ Interval joined_values(Interval x, Interval y) {
     const Interval zero(0.0), outside = sqrt(square(max(x, zero)) + square(max(y, zero)));
     return outside + min(max(x, y), zero);
 }
+// The distance to a box, as a field that is joined with its own asks for it: box_distance.
+Interval values_of_way(const Box &box, const Cell &cell) {
+    Interval outside(0.0), most(-infinity);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Interval half = (Interval(box.hi[i]) - Interval(box.lo[i])) * Interval(0.5),
+                       beyond = abs(cell.p[i] - (Interval(box.lo[i]) + half)) - half;
+        outside += square(max(beyond, Interval(0.0)));
+        most = max(most, beyond);
+    }
+    return sqrt(outside) + min(most, Interval(0.0));
+}
+Cell clamped(const Cell &cell, const Box &box) {
+    Cell out = cell;
+    for (std::size_t i = 0; i < 3; ++i)
+        out.p[i] = max(min(cell.p[i], Interval(box.hi[i])), Interval(box.lo[i]));
+    return out;
+}
 } // namespace
 
 // For values, symmetries and bends, which no choice's border decides.
@@ -30,7 +47,16 @@ const Tape &Prover::tape_of(ir::NodeId field) {
     return tapes.emplace(field, std::move(tape)).first->second;
 }
 
+// What is proved in its own box alone is joined with the way to it, as it is lowered.
 Interval Prover::values(ShapeId id, const Cell &cell, int depth) {
+    const ir::ShapeFact &fact = of(id).fact;
+    if (!fact.local) return own_values(id, cell, depth);
+    if (!fact.bounds.finite() || fact.bounds.empty()) return Interval::everything();
+    const Box box = padded(fact.bounds);
+    return joined_values(values_of_way(box, cell), own_values(id, clamped(cell, box), depth));
+}
+
+Interval Prover::own_values(ShapeId id, const Cell &cell, int depth) {
     const Shape shape = scene.shapes[id];
     if (depth > 64 || work.spent()) return Interval::everything();
     work.take(1); // shapes share their parts

@@ -1,0 +1,89 @@
+// What is made of shapes that are joined with their own box, of what is nowhere, of insides and of
+// what is very large: no bound is exceeded, and nothing of a solid is cut off.
+#include "driver/compile.h"
+#include "ir/lower/lower.h"
+#include "tests/support/slopes.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace fathom;
+using namespace fathom::test;
+
+namespace {
+
+driver::Compilation compiled(const std::string &text) {
+    return driver::compile_text("combining.sdf", text, "", {});
+}
+
+// Balls about random points, of the size that is marched, that hold a point of the solid as it is
+// without the boxes that are joined to it from outside.
+int balls_cut(const std::string &text, double reach) {
+    driver::Compilation marched = compiled(text), plain = compiled(text);
+    for (ir::ShapeFact &fact : plain.scene.facts)
+        fact.guard = false, fact.outward = std::numeric_limits<double>::infinity();
+    ir::lower(marched.scene), ir::lower(plain.scene);
+    Sampler distance(marched.scene), field(plain.scene);
+    std::vector<Point3> centers, inside;
+    for (int i = 0; i < 50'000; ++i)
+        centers.push_back(distance.in_box({-reach, -reach, -reach}, {reach, reach, reach}));
+    const std::vector<float> radii = distance.values(centers);
+    for (std::size_t i = 0; i < centers.size(); ++i) {
+        const double radius = std::min<double>(std::max(radii[i], 0.0f), 4 * reach);
+        inside.push_back(distance.in_ball(centers[i], radius * 0.9999));
+    }
+    const std::vector<float> found = field.values(inside);
+    const double least = 1e-5 * reach;
+    int cut = 0;
+    for (std::size_t i = 0; i < centers.size(); ++i) cut += radii[i] > least && found[i] < -least;
+    return cut;
+}
+
+struct Case {
+    std::string text;
+    double reach = 8;
+    bool refused = false; // it may be
+};
+
+// Whether it is taken.
+bool holds(const Case &test) {
+    driver::Compilation c = compiled(test.text);
+    INFO(test.text);
+    if (!c.good()) {
+        CHECK(test.refused);
+        return false;
+    }
+    ir::lower(c.scene);
+    const double r = test.reach;
+    const Slopes truth = measure(c.scene, {-r, -r, -r}, {r, r, r}, 50'000);
+    std::printf("%.4g of what is proved: %s\n", truth.steepest, test.text.c_str());
+    CHECK(truth.unsafe == 0);
+    CHECK(truth.steepest <= 1 + 1e-3);
+    CHECK(balls_cut(test.text, r) == 0);
+    return true;
+}
+
+} // namespace
+
+TEST_CASE("what is joined with its own box is measured so") {
+    const std::string small = "implicit(p => 0.01 * (length(p) - 1)).twist(0.01, axis: Z)";
+    const std::string bumped = "sphere(1).distort(p => [p.x + 0.01 * sin(p.x * p.x * p.x), "
+                               "p.y + clamp(20 * p.y - 41, -1, 1), p.z])";
+    const std::string bent = "implicit(p => 0.02 * (length(p) - 1)).bend(0.01, axis: X)";
+    for (const std::string &a : {small, bumped, bent}) {
+        const std::string b = "(" + a + ").translate(x: 6)";
+        for (const std::string use :
+             {"(a | ellipsoid([1, 0.5, 0.5])).offset(1.5)",
+              "blend(a, b, p => clamp(length(p - [6, 0, 0]), 0, 1)).offset(1)",
+              "blend(a, b, p => clamp(0.1 * p.x, 0, 1)).within(ball(6))",
+              "(a | b).offset(0.5).taper(0.5, from: -1, to: 1)",
+              "smooth_union(0.5, a, ellipsoid([1, 0.5, 0.5])).offset(0.7)"})
+            holds({"let a = " + a + "\nlet b = " + b + "\n" + use + "\n", 8, true});
+    }
+}
