@@ -60,12 +60,14 @@ Box Prover::varying_box(NodeId weight, const Box &within) {
 
 // The most by which two exact fields differ; infinity where they are none, or without bounds. The
 // difference is greatest inside one of the solids A and B: outside both, |a - b| is at most their
-// Hausdorff distance, which is a difference at a point of A or B.
+// Hausdorff distance, which is a difference at a point of A or B. What is nowhere has a number in
+// place of a distance.
 double Prover::gap_of_exact(ShapeId id) {
     const Shape shape = scene.shapes[id];
     const Derived &a = child(shape, 0), &b = child(shape, 1);
     const Box common = ir::hull(a.fact.bounds, b.fact.bounds);
-    if (!a.exact_outside || !b.exact_outside || !common.finite() || common.empty()) return infinity;
+    const bool nowhere = a.fact.bounds.empty() || b.fact.bounds.empty();
+    if (!a.exact_outside || !b.exact_outside || !common.finite() || nowhere) return infinity;
     // of the box that holds both: outside both fields lie in [d, d + D], inside above -D/2
     double diagonal = 0;
     for (std::size_t i = 0; i < 3; ++i) diagonal += std::pow(common.hi[i] - common.lo[i], 2);

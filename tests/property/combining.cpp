@@ -87,3 +87,16 @@ TEST_CASE("what is joined with its own box is measured so") {
             holds({"let a = " + a + "\nlet b = " + b + "\n" + use + "\n", 8, true});
     }
 }
+
+TEST_CASE("what is nowhere is no distance to anything") {
+    for (const std::string none :
+         {"empty", "union {}", "union([for i in 0..0 { sphere(1) }])", "empty.translate(x: 1)",
+          "empty.offset(-0.5)", "(empty | empty).scale(2)"})
+        for (const std::string use : {"blend(sphere(1), NONE, p => clamp(2 - length(p), 0, 1))",
+                                      "blend(NONE, box(1), p => clamp(0.5 - p.x, 0, 1))",
+                                      "blend(NONE, NONE, p => clamp(0.5 - p.x, 0, 1)) | box(1)"}) {
+            std::string text = use;
+            for (std::size_t at; (at = text.find("NONE")) != text.npos;) text.replace(at, 4, none);
+            holds({text + "\n", 3, true});
+        }
+}
