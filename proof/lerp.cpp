@@ -101,8 +101,7 @@ Derived Prover::know_lerp(ShapeId id) {
     if (!convex) sup = 1 + (sup - 1) * options.rules[Rule::LerpWeights];
     k.offset_slack = infinity;
     if (varies || !convex) k.mean_slack = infinity;
-    // t*a + (1-t)*b < 0 needs a < 0 or b < 0 while both weights are at least 0.
-    unite(k, b);
+    weigh(k, b); // both weights are at least 0
     if (!convex) {
         k.fact.bounds = k.outer = Box::everything();
         forget_moment_arms(k);

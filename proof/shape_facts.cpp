@@ -30,6 +30,12 @@ void unite(Derived &k, const Derived &c) {
     k.outer = meeting(k.outer, c.outer);
 }
 
+void weigh(Derived &k, const Derived &c) {
+    const Box outer = ir::hull(k.outer, c.outer);
+    unite(k, c);
+    k.outer = outer;
+}
+
 void inherit(Derived &k, const Derived &c) {
     k.failed = k.failed || c.failed;
     k.fact.status = std::max(k.fact.status, c.fact.status);

@@ -49,6 +49,9 @@ void differ_by(Derived &k, double by);
 
 // Of a min of fields: {min < t} is in the hull of the children's; {min > -t} in the meet of theirs.
 void unite(Derived &k, const Derived &c);
+// Of a mean of fields, as of Lerp: it is below t, or above -t, only where one of them is. So both of
+// its boxes are hulls.
+void weigh(Derived &k, const Derived &c);
 // What every combination of two inherits: the attributes of the gradients.
 void inherit(Derived &k, const Derived &c);
 

@@ -100,3 +100,17 @@ TEST_CASE("what is nowhere is no distance to anything") {
             holds({text + "\n", 3, true});
         }
 }
+
+TEST_CASE("the outside of a blend is where one of its shapes is not") {
+    for (const std::string weight : {"0.5", "0.2", "0.9"})
+        for (const std::string use :
+             {"complement(m).displace(p => 0.01 * sin(p.x))",
+              "complement(m.offset(-0.3)).displace(p => 0.01 * sin(p.x))",
+              "complement(complement(complement(m))).displace(p => 0.02 * sin(p.y))"}) {
+            const std::string text = "let a = sphere(5).translate(x: -3)\n"
+                                     "let b = sphere(5).translate(x: 3)\n"
+                                     "let m = blend(complement(a), complement(b), " +
+                                     weight + ")\n" + use + "\n";
+            CHECK(holds({text, 10}));
+        }
+}
