@@ -61,23 +61,24 @@ Box Prover::varying_box(NodeId weight, const Box &within) {
 // The most by which two exact fields differ; infinity where they are none, or without bounds. The
 // difference is greatest inside one of the solids A and B: outside both, |a - b| is at most their
 // Hausdorff distance, which is a difference at a point of A or B. What is nowhere has a number in
-// place of a distance.
+// place of a distance, and a fold may leave a field less than the way to the point it falls towards.
 double Prover::gap_of_exact(ShapeId id) {
     const Shape shape = scene.shapes[id];
     const Derived &a = child(shape, 0), &b = child(shape, 1);
     const Box common = ir::hull(a.fact.bounds, b.fact.bounds);
     const bool nowhere = a.fact.bounds.empty() || b.fact.bounds.empty();
     if (!a.exact_outside || !b.exact_outside || !common.finite() || nowhere) return infinity;
+    const double less = up(a.short_by + b.short_by);
     // of the box that holds both: outside both fields lie in [d, d + D], inside above -D/2
     double diagonal = 0;
     for (std::size_t i = 0; i < 3; ++i) diagonal += std::pow(common.hi[i] - common.lo[i], 2);
-    const double gap = up(1.5 * std::sqrt(diagonal) + a.lowered + b.lowered, 4);
+    const double gap = up(1.5 * std::sqrt(diagonal) + a.lowered + b.lowered + less, 4);
     const auto f = expression(shape.children[0]), g = expression(shape.children[1]);
     if (!f || !g) return gap;
     Budget budget;
     budget.instructions = options.field_instructions / 4;
-    return std::min(gap, bound_magnitude(flattening, ranges, graph.sub(*f, *g),
-                                         {to_cell(common), nullptr}, budget));
+    return std::min(gap, up(less + bound_magnitude(flattening, ranges, graph.sub(*f, *g),
+                                                   {to_cell(common), nullptr}, budget)));
 }
 
 Derived Prover::know_lerp(ShapeId id) {

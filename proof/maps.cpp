@@ -133,7 +133,7 @@ Derived Prover::know_scale(ShapeId id, Derived k) {
         least = std::min(least, by[i].mignitude());
     }
     if (flat) by[2] = 1.0;
-    k.lowered = up(k.lowered * most);
+    k.lowered = up(k.lowered * most), k.short_by = up(k.short_by * most);
     k.fact.bounds = times(k.fact.bounds, by);
     k.outer = everywhere(k.outer) ? k.outer : times(k.outer, by);
     if (uniform) {
@@ -175,7 +175,9 @@ Derived Prover::know_fold(ShapeId id, Derived k) {
     // A fold that adds nothing behind its mirrors leaves the distance outside exact; whether
     // the shape lies on one side is known where its box does.
     k.parts_exact = false;
-    k.exact_outside = k.exact_outside && fold_is_clean(shape.args[0], child(shape).fact.bounds);
+    const auto flat = fold_is_clean(shape.args[0], child(shape).fact.bounds);
+    k.exact_outside = k.exact_outside && flat;
+    k.short_by = up(k.short_by + flat.value_or(0));
     k.fact.symmetric = fold_symmetry(shape.args[0], k.fact.symmetric);
     k.fact.moment_arm = {infinity, infinity, infinity};
     cap_moment_arms(k);
@@ -291,17 +293,24 @@ std::optional<Vec> Prover::whole_shift(NodeId q) {
 
 Interval Prover::number_anywhere(NodeId id) { return range_of(flattening, ranges, id)[0]; }
 
-bool Prover::fold_is_clean(NodeId q, const Box &box) {
+// Of points p and r the shifts differ by the width of their interval at most: with q(r) = s, the
+// nearest of q(p), |p - r| <= |q(p) - s| + that.
+std::optional<double> Prover::fold_is_clean(NodeId q, const Box &box) {
     NodeId p = graph.point(graph[q].type);
+    double flat = 0;
     for (int i = 0; i < ir::components(graph[q].type); ++i) {
         NodeId c = in_one_form(graph, component_of(graph, q, i)), own = graph.component(p, i);
         if (c == own) continue;
         bool mirror = graph[c].op == Op::Abs && graph.arg(c, 0) == own;
-        if (mirror ? box.lo[static_cast<std::size_t>(i)] < 0
-                   : !number_anywhere(shift_of(q, i).value_or(own)).finite())
-            return false;
+        if (mirror) {
+            if (box.lo[static_cast<std::size_t>(i)] < 0) return {};
+            continue;
+        }
+        const Interval shift = number_anywhere(shift_of(q, i).value_or(own));
+        if (!shift.finite()) return {};
+        flat = up(std::hypot(flat, shift.width()), 4);
     }
-    return true;
+    return flat;
 }
 
 std::array<bool, 3> Prover::fold_symmetry(NodeId q, std::array<bool, 3> child) {

@@ -139,8 +139,8 @@ struct Prover {
 
     // -- folds: q is p by component, |p_i|, or p less something limited
     Box fold_preimage(ir::NodeId q, const Box &box);
-    bool fold_is_clean(ir::NodeId q,
-                       const Box &box); // the box lies on the near side of every mirror
+    // Where the box lies on the near side of every mirror: how far a fold draws apart what it keeps.
+    std::optional<double> fold_is_clean(ir::NodeId q, const Box &box);
     std::array<bool, 3> fold_symmetry(ir::NodeId q, std::array<bool, 3> child);
     std::optional<ir::NodeId> shift_of(ir::NodeId q, int i);
     std::optional<Vec> whole_shift(ir::NodeId q); // the interval of p - q, where limited

@@ -43,6 +43,7 @@ void inherit(Derived &k, const Derived &c) {
     k.offset_slack = std::max(k.offset_slack, c.offset_slack);
     k.mean_slack = std::max(k.mean_slack, c.mean_slack);
     k.lowered = std::max(k.lowered, c.lowered);
+    k.short_by = std::max(k.short_by, c.short_by);
     for (std::size_t a = 0; a < 3; ++a) {
         k.fact.symmetric[a] = k.fact.symmetric[a] && c.fact.symmetric[a];
         k.fact.moment_arm[a] = std::max(k.fact.moment_arm[a], c.fact.moment_arm[a]);

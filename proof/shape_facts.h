@@ -37,7 +37,10 @@ struct Derived {
     // By how much it may differ from the mean of its parts' values, L times, with the weights that its
     // gradient has: at most offset_slack, and 0 of a mean by a constant.
     double mean_slack = 0;
-    double lowered = 0;  // outside, an exact field and at most this much (offsets by less than 0)
+    double lowered = 0; // outside, an exact field and at most this much (offsets by less than 0)
+    // Outside, the field at p is at least f(s) + |p - s| less this much, for a point s of the box:
+    // what is drawn apart is flat between its halves, as far as they are apart.
+    double short_by = 0;
     NodeId leaf;         // of a field of one's own, that field
     bool failed = false; // reported, here or below
 };

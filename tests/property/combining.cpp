@@ -114,3 +114,16 @@ TEST_CASE("the outside of a blend is where one of its shapes is not") {
             CHECK(holds({text, 10}));
         }
 }
+
+TEST_CASE("what is drawn apart is flat between its halves") {
+    for (const std::string apart :
+         {"sphere(1).translate(x: 20).elongate([10, 0, 0])",
+          "sphere(1).translate(x: 5).elongate([10, 0, 0])",
+          "sphere(1).translate([3, 2, 0]).elongate([4, 6, 0])",
+          "sphere(0.5).translate(x: 3).elongate([4, 0, 0]).scale(2)",
+          "(sphere(1).translate(x: 8).elongate([6, 0, 0]) | box(1)).rotate(30deg)"})
+        CHECK(holds({"let f = " + apart +
+                         "\nlet g = sphere(1).translate(x: 25)\n"
+                         "blend(f, g, p => clamp(p.y, 0, 1)).offset(35)\n",
+                     60}));
+}
