@@ -17,6 +17,8 @@
 namespace fathom::ir {
 
 constexpr double nowhere = 1e9; // the distance to what is not there
+// What a least is begun with, where there is one: no field is larger in single precision.
+constexpr double beyond_all = 1e30;
 
 // Which of the five functions of a shape is made (lower.h).
 enum class Reading : std::uint8_t { Raw, Marched, Hit, SafeRadius, Shaded };
@@ -102,7 +104,7 @@ class Lowering {
     NodeId negated(Reading reading, NodeId value);
     NodeId distance_of(Reading reading, NodeId value);
     NodeId at_distance(Reading reading, NodeId value, NodeId distance);
-    NodeId far_away(Reading reading);
+    NodeId far_away(Reading reading, double distance = nowhere);
     NodeId unpainted(NodeId distance);
     // A Loop of `count` iterations that begins far away: `each` says what the value so far becomes,
     // with `index` the iteration's number.

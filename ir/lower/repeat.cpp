@@ -106,7 +106,7 @@ int copies_evaluated(const Scene &scene, ShapeId id) {
 
 template <class F>
 NodeId Lowering::minimum_of(Reading reading, NodeId count, int max_count, NodeId index, F each) {
-    const NodeId start = far_away(reading);
+    const NodeId start = far_away(reading, max_count > 0 ? beyond_all : nowhere);
     const NodeId best = graph_.fresh_var(graph_.type(start));
     Loop loop;
     loop.count = count;
@@ -294,7 +294,7 @@ NodeId Lowering::polar(Reading reading, ShapeId id, Where frame) {
 }
 
 // A loop over the rows, carrying the least so far. A smooth union carries the blend instead: its
-// raw field only; 1e9 to begin with is further off than any blend reaches.
+// raw field only, and what it begins with is further off than any blend reaches.
 NodeId Lowering::many(Reading reading, ShapeId id, Where frame) {
     Graph &g = graph_;
     const Shape &s = shape(id);

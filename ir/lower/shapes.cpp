@@ -32,8 +32,8 @@ NodeId Lowering::unpainted(NodeId distance) {
     return graph_.make(Op::MakeHit, {distance, graph_.integer(-1), graph_.vec3(0, 0, 0),
                                      graph_.constant({Type::Vec4, {}})});
 }
-NodeId Lowering::far_away(Reading reading) {
-    const NodeId far = graph_.number(nowhere);
+NodeId Lowering::far_away(Reading reading, double distance) {
+    const NodeId far = graph_.number(distance);
     return reading == Reading::Hit ? unpainted(far) : far;
 }
 

@@ -127,3 +127,31 @@ TEST_CASE("what is drawn apart is flat between its halves") {
                          "blend(f, g, p => clamp(p.y, 0, 1)).offset(35)\n",
                      60}));
 }
+
+TEST_CASE("no size is taken for what is nowhere") {
+    struct Large {
+        std::string text;
+        double x, wanted;
+    };
+    const std::vector<Large> all{
+        {"polygon([[-1, -1], [1, -1], [0, 1]]).extrude(1)", 4e10, 4e10},
+        {"polygon([[-1, -1], [1, -1], [0, 1]]).revolve(3)", 4e10, 4e10},
+        {"polygon([[0, -1], [1, -1], [0, 1]]).revolve()", 4e10, 4e10},
+        {"union { for i in 0..300 { sphere(0.3).translate([0.01 * i, 0, 0.005 * i]) } }", 4e10,
+         4e10},
+        {"(union { for i in 0..300 { sphere(0.3).translate([0.01 * i, 0, 0.005 * i]) } })"
+         ".offset(2e9)",
+         4e10, 3.8e10},
+        {"sphere(1) | empty", 4e10, 4e10},
+        {"tubes([[-1, 0, 0], [1, 0, 0], [1, 1, 0]], radius: 2e9)", 4e10, 3.8e10},
+        {"sphere(1).repeat_polar(40)", 4e10, 4e10},
+    };
+    for (const Large &test : all) {
+        driver::Compilation c = compiled(test.text);
+        INFO(test.text);
+        REQUIRE(c.good());
+        ir::lower(c.scene);
+        Sampler sampler(c.scene);
+        CHECK(sampler.values({{test.x, 0, 0}}).at(0) == Approx(test.wanted).epsilon(1e-4));
+    }
+}
