@@ -13,9 +13,11 @@ namespace fathom::ir {
 // How many copies of a repetition have to be evaluated, per axis, for a valid and continuous bound.
 struct RepeatPlan {
     std::array<int, 3> neighbors{
-        0, 0, 0};       // copies evaluated along an axis: 0 does not repeat, 1 the own cell, 2 the
-                        // nearer neighbour too, 3 both neighbours, 2n+1 more
-    bool guard = false; // also the distance to the slab of all cells not evaluated
+        0, 0, 0};       // copies evaluated along an axis: 0 does not repeat, 1 the own cell (no
+                        // other is ever nearer), 2 the nearer neighbour too, 3 both neighbours,
+                        // 2n+1 more
+    bool guard = false; // also the distance to the slabs of all copies not evaluated, along the
+                        // axes where more than one is
     bool hold = false;  // of each copy the greater of its field and the way to its bounds: a field
                         // that is only a bound may be less than the way to copies not evaluated
     Box copy;           // the child's bounds, for both

@@ -54,7 +54,9 @@ struct LatticeAxis {
 // `nearest`, or the distance to the copies that were not evaluated where that is less.
 // The copies that were not evaluated lie, along some axis, beyond the first or the last
 // evaluated. Each side's are held by a box that is bounded there by the nearest of them, and
-// elsewhere by what all copies together extend to.
+// elsewhere by what all copies together extend to. An axis along which one copy is evaluated has
+// none: either there is one only, or no other is ever nearer (lipschitz.md, 7), and its slab would
+// begin on the wall of the own cell.
 NodeId nearest_of_others(Graph &g, const std::array<LatticeAxis, 3> &axes, int dims,
                          const Box &held, NodeId nearest) {
     const auto outside =
@@ -69,7 +71,7 @@ NodeId nearest_of_others(Graph &g, const std::array<LatticeAxis, 3> &axes, int d
     };
     for (int i = 0; i < dims; ++i) {
         const LatticeAxis &a = axes[static_cast<std::size_t>(i)];
-        if (!a.repeats) continue;
+        if (!a.repeats || a.copies == 1) continue;
         const double lo = held.lo[static_cast<std::size_t>(i)],
                      hi = held.hi[static_cast<std::size_t>(i)];
         if (!std::isfinite(lo) || !std::isfinite(hi)) continue;

@@ -137,6 +137,29 @@ TEST_CASE("copies that differ: the guard keeps a bound, and the surface is the u
     }
 }
 
+TEST_CASE("a guard along one axis leaves walls alone that the own copy just fills") {
+    Builder t;
+    const ShapeId all =
+        t.lattice(t.moved(t.sphere(0.5), 0.3, 0, 0), {1, 0, 1}, {1e9, 1e9, 1e9}, {}, true);
+    plan(t, all, {3, 0, 1}); // it reaches over x's wall, and up to z's
+    t.fact(all).repeat.guard = true;
+    t.fact(all).repeat.copy = {{-0.8, -0.5, -0.500001}, {0.8, 0.5, 0.500001}};
+    Reference reference(t.lowered(all));
+    Random random;
+    for (int i = 0; i < 400; ++i) {
+        P p = random.point(3);
+        if (i % 2) p[2] = std::round(p[2]) + 0.5;
+        const double truth =
+            brute_lattice(p, {1, 0, 1}, {-5, 0, -5}, {5, 0, 5}, {0, 0, 0}, true, [](P q, P) {
+                return length({q[0] - 0.3, q[1], q[2]}) - 0.5;
+            });
+        const double d = reference.distance(p);
+        CAPTURE(p[0], p[1], p[2]);
+        CHECK(d <= truth + 1e-9);
+        CHECK(d >= std::min(truth, 0.5) - 1e-9);
+    }
+}
+
 TEST_CASE("rings of copies") {
     for (int count : {1, 2, 5, 12})
         for (int sectors : {2, 3, 12}) {
