@@ -125,8 +125,8 @@ Prover::Copies Prover::lattice_copies(const Shape &shape, const ir::Repetition &
             copies.too_many = true;
             continue;
         }
-        bool fits =
-            lo >= -cell / 2 * (1 + 1e-5) && hi <= cell / 2 * (1 + 1e-5); // the boxes are padded
+        // What reaches further out has to be seen from beyond the wall.
+        bool fits = lo >= -cell / 2 * (1 + slack) && hi <= cell / 2 * (1 + slack);
         double least, most;
         if (repetition.mirrored) {
             double reach = std::max(-lo, hi);

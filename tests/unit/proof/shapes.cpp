@@ -122,6 +122,11 @@ TEST_CASE("repetition evaluates as few copies as are enough") {
     CHECK(plan(repeat(aside, 1.6)).neighbors == std::array{2, 0, 1});
     CHECK(plan(repeat(s.box(2.4, 1, 1), 1.6)).neighbors == std::array{3, 0, 1});
     CHECK(plan(repeat(aside, 1.6, true)).neighbors == std::array{1, 0, 1});
+    const ShapeId fills = s.box(1, 1, 1), over = s.box(1 + 8e-6, 1, 1); // by 4e-6 of the cell
+    for (const bool mirrored : {false, true}) {
+        CHECK(plan(repeat(fills, 1, mirrored)).neighbors == std::array{1, 0, 1});
+        CHECK(plan(repeat(over, 1, mirrored)).neighbors == std::array{3, 0, 1});
+    }
     NodeId id = s.g.fresh_var(Type::Vec3);
     NodeId hash = s.call(Op::Hash, id);
     ShapeId differs = s.add(translated(s.g, s.box(0.5, 1, 0.5), s.vec(s.n(0), hash, s.n(0))));
