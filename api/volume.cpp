@@ -95,6 +95,7 @@ Volume made_volume(const Scene &scene, const VolumeOptions &options) {
                            (farthest + (around + 1) * side) * 0x1p-21;
         volume.rests_on = rests_on(found.used_bound);
     }
+    const double off = volume.error.value_or(made.octree.lattice.side(made.octree.lattice.level));
     progress.phase(1);
     volume.origin = grid->origin;
     volume.side = side;
@@ -106,14 +107,15 @@ Volume made_volume(const Scene &scene, const VolumeOptions &options) {
             colors = colors_of(ir, options.time, made.mesh, made.octree.lattice.unit);
         if (std::ranges::all_of(colors, [&](const auto &color) { return color == colors[0]; }))
             colors.clear(); // one colour everywhere is none that somebody gave
-        for (const fathom::mesh::Voxel &voxel :
-             fathom::mesh::band_of(ir, settings, made.mesh, *grid, volume.band, colors, progress)) {
+        for (const fathom::mesh::Voxel &voxel : fathom::mesh::band_of(
+                 ir, settings, made.mesh, off, *grid, volume.band, colors, progress)) {
             volume.voxels.push_back(voxel.at);
             volume.distances.push_back(voxel.distance);
             if (!colors.empty()) volume.colors.push_back(voxel.color);
         }
     } else {
-        volume.distances = fathom::mesh::distances_of(ir, settings, made.mesh, *grid, progress);
+        volume.distances =
+            fathom::mesh::distances_of(ir, settings, made.mesh, off, *grid, progress);
     }
     if (progress.cancelled) return without_volume(refusal_of(Failure::Cancelled));
     return volume;

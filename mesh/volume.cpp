@@ -17,18 +17,65 @@ std::array<std::int32_t, 3> blocks_of(const VoxelGrid &grid) {
     return blocks;
 }
 
-// Gives the distances the field's signs.
-void sign(Evaluator &evaluator, const VoxelGrid &grid, std::vector<Voxel> &voxels,
+// Where a distance's sign is asked when the field does not say: ways from the voxel.
+constexpr std::size_t ways = 14; // the axes and the diagonals, both ways
+Point way(std::size_t k) {
+    constexpr float diagonal = 0.57735f;
+    Point p{};
+    if (k < 6)
+        p[k / 2] = k % 2 == 0 ? 1.0f : -1.0f;
+    else
+        for (std::size_t i = 0; i < 3; ++i) p[i] = (k - 6) >> i & 1 ? diagonal : -diagonal;
+    return p;
+}
+
+// Gives the distances their signs: negative where the field is not positive, as in meshes. Where it
+// is 0, but for rounding, and the mesh is farther than the surface can be from it, parts of the solid
+// touch or a sheet without thickness hangs in space: there the sign is that of the largest number
+// that the field has about.
+void sign(Evaluator &evaluator, const VoxelGrid &grid, double off, std::vector<Voxel> &voxels,
           std::size_t first) {
     Points points;
     for (std::size_t k = first; k < voxels.size(); ++k) points.add(grid.point(voxels[k].at));
     std::vector<float> values;
     values_at(evaluator, *evaluator.field.whole, points, values);
-    for (std::size_t k = first; k < voxels.size(); ++k)
-        if (values[k - first] < 0) voxels[k].distance = -voxels[k].distance;
+    const double rounding = 64 * grid.ulp();
+    std::vector<std::size_t> doubtful;
+    Points about;
+    for (std::size_t k = first; k < voxels.size(); ++k) {
+        const float value = values[k - first], d = voxels[k].distance;
+        if (value <= 0) voxels[k].distance = -d;
+        if (!(d > off) || !(std::fabs(value) <= rounding)) continue;
+        doubtful.push_back(k);
+        const auto far = static_cast<float>(std::max(0.5 * (d - off), rounding));
+        for (std::size_t w = 0; w < ways; ++w) {
+            Point p = grid.point(voxels[k].at);
+            const Point to = way(w);
+            for (std::size_t i = 0; i < 3; ++i) p[i] += far * to[i];
+            about.add(p);
+        }
+    }
+    if (doubtful.empty()) return;
+    values_at(evaluator, *evaluator.field.whole, about, values);
+    for (std::size_t n = 0; n < doubtful.size(); ++n) {
+        float largest = 0;
+        for (std::size_t w = 0; w < ways; ++w)
+            if (const float v = values[n * ways + w]; std::fabs(v) > std::fabs(largest))
+                largest = v;
+        float &distance = voxels[doubtful[n]].distance;
+        if (largest != 0) distance = std::copysign(distance, largest);
+    }
 }
 
 } // namespace
+
+double VoxelGrid::ulp() const {
+    double largest = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        largest = std::max(
+            {largest, std::fabs(origin[i]), std::fabs(origin[i] + side * (counts[i] - 1))});
+    return std::ldexp(largest, -23);
+}
 
 std::optional<VoxelGrid> make_grid(const ir::Box &box, double side, int padding) {
     VoxelGrid grid;
@@ -50,8 +97,8 @@ std::optional<VoxelGrid> make_grid(const ir::Box &box, double side, int padding)
 }
 
 std::vector<Voxel> band_of(const ir::Scene &scene, const Settings &settings, const Mesh &mesh,
-                           const VoxelGrid &grid, double band, std::span<const Point> colors,
-                           Progress &progress) {
+                           double off, const VoxelGrid &grid, double band,
+                           std::span<const Point> colors, Progress &progress) {
     const TriangleTree tree(mesh);
     const Field field(scene, settings.time, settings.bounds);
     const std::array<std::int32_t, 3> blocks = blocks_of(grid);
@@ -84,7 +131,7 @@ std::vector<Voxel> band_of(const ir::Scene &scene, const Settings &settings, con
                             near->shares[c] * colors[mesh.triangles[near->triangle][c]][i]);
                 found[row].push_back(made);
             }
-            sign(evaluator, grid, found[row], first);
+            sign(evaluator, grid, off, found[row], first);
         }
     };
     in_parallel(
@@ -95,7 +142,7 @@ std::vector<Voxel> band_of(const ir::Scene &scene, const Settings &settings, con
 }
 
 std::vector<float> distances_of(const ir::Scene &scene, const Settings &settings, const Mesh &mesh,
-                                const VoxelGrid &grid, Progress &progress) {
+                                double off, const VoxelGrid &grid, Progress &progress) {
     const TriangleTree tree(mesh);
     const Field field(scene, settings.time, settings.bounds);
     const auto width = static_cast<std::size_t>(grid.counts[0]);
@@ -120,7 +167,7 @@ std::vector<float> distances_of(const ir::Scene &scene, const Settings &settings
                 if (!near) last = tree.nearest(grid.point(voxel.at), 1e30)->distance;
                 voxel.distance = static_cast<float>(last);
             }
-            sign(evaluator, grid, voxels, 0);
+            sign(evaluator, grid, off, voxels, 0);
             for (std::size_t k = 0; k < width; ++k) distances[row * width + k] = voxels[k].distance;
         });
     return distances;

@@ -19,6 +19,7 @@ struct VoxelGrid {
         for (std::size_t i = 0; i < 3; ++i) p[i] = static_cast<float>(origin[i] + side * at[i]);
         return p;
     }
+    double ulp() const; // of the largest coordinate
 };
 
 // About a box, with so many voxels to each side. Points lie at whole multiples of the side. None:
@@ -31,15 +32,15 @@ struct Voxel {
     Point color{};      // of the nearest point, where colours were given
 };
 
-// The voxels that are nearer to the mesh than `band`, in the order of blocks of eight a side. Signs are
-// the field's. `colors`: by vertex of the mesh, or none.
+// The voxels that are nearer to the mesh than `band`, in the order of blocks of eight a side. `off`: how
+// far mesh and surface are apart at most. `colors`: by vertex of the mesh, or none.
 std::vector<Voxel> band_of(const ir::Scene &scene, const Settings &settings, const Mesh &mesh,
-                           const VoxelGrid &grid, double band, std::span<const Point> colors,
-                           Progress &progress);
+                           double off, const VoxelGrid &grid, double band,
+                           std::span<const Point> colors, Progress &progress);
 
 // At all points, x the fastest.
 std::vector<float> distances_of(const ir::Scene &scene, const Settings &settings, const Mesh &mesh,
-                                const VoxelGrid &grid, Progress &progress);
+                                double off, const VoxelGrid &grid, Progress &progress);
 
 // What another function of the scene gives at all points, as many numbers a point as it has
 // components (Scene::fields).

@@ -30,7 +30,8 @@ Banded banded(const std::string &text, double side, unsigned threads = 0) {
     const std::optional<mesh::VoxelGrid> grid = mesh::make_grid(made.box, side, 4);
     REQUIRE(grid);
     mesh::Progress progress;
-    return {*grid, mesh::band_of(c.scene, settings, made.mesh, *grid, 3 * side, {}, progress)};
+    return {*grid, mesh::band_of(c.scene, settings, made.mesh, settings.side, *grid, 3 * side, {},
+                                 progress)};
 }
 
 } // namespace
@@ -86,7 +87,7 @@ TEST_CASE("all voxels, and the nearest triangle") {
     REQUIRE(grid);
     mesh::Progress progress;
     const std::vector<float> all =
-        mesh::distances_of(c.scene, settings, made.mesh, *grid, progress);
+        mesh::distances_of(c.scene, settings, made.mesh, settings.side, *grid, progress);
     REQUIRE(all.size() == std::size_t(grid->counts[0]) * std::size_t(grid->counts[1]) *
                               std::size_t(grid->counts[2]));
     const mesh::TriangleTree tree(made.mesh);
