@@ -6,6 +6,7 @@
 
 #include <fathom/slice.h>
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -50,13 +51,14 @@ std::string file_of(const SliceCommand &command, const std::string &out, std::si
 }
 
 Json json_of(const v1::Slice &slice, const std::string &file) {
-    Json json{
-        {"at", slice.at},
-        {"file", file},
-        {"status", slice.certified ? "certified" : "partial"},
-        {"contours", slice.contours.size()},
-        {"area",
-         {{"value", slice.contours_area}, {"least", slice.area.lo}, {"most", slice.area.hi}}}};
+    Json json{{"at", slice.at},
+              {"file", file},
+              {"status", slice.certified ? "certified" : "partial"},
+              {"contours", slice.contours.size()},
+              {"area",
+               {{"value", std::clamp(slice.contours_area, slice.area.lo, slice.area.hi)},
+                {"least", slice.area.lo},
+                {"most", slice.area.hi}}}};
     const auto everywhere = [&](double d) { return slice.certified ? Json(d) : Json(); };
     json["contours_to_border"] = everywhere(slice.contours_to_border);
     json["border_to_contours"] = everywhere(slice.border_to_contours);
@@ -76,12 +78,31 @@ void say_undecided(const v1::Slices &cut, const SliceCommand &command, const std
     }
     if (!first) return;
     const v1::PlaneBox &box = first->undecided.front();
+    const bool flat = command.solid.flat; // a drawing has no height
     terminal.say(fmt::format(
-        "{}: {} squares of {} slices may hold border that the contours do not show, the first of "
-        "them at {} = {} from [{:.6g}, {:.6g}] to [{:.6g}, {:.6g}]; another height, if a face "
-        "lies in the plane, or a larger `--resolution` tells more",
-        out, squares, slices, command.axis, format_shortest(first->at), box.lo[0], box.lo[1],
-        box.hi[0], box.hi[1]));
+        "{}: {} square{}{} may hold border that the contours do not show, the first of them{} from "
+        "[{:.6g}, {:.6g}] to [{:.6g}, {:.6g}]; {}a larger `--resolution` tells more",
+        out, squares, squares == 1 ? "" : "s",
+        flat ? "" : fmt::format(" of {} slice{}", slices, slices == 1 ? "" : "s"),
+        flat ? "" : fmt::format(" at {} = {}", command.axis, format_shortest(first->at)), box.lo[0],
+        box.lo[1], box.hi[0], box.hi[1],
+        flat ? "" : "another height, if a face lies in the plane, or "));
+}
+
+// Where no slice has a contour.
+void say_empty(const v1::Slices &cut, const SliceCommand &command, const std::string &out,
+               Terminal &terminal) {
+    const auto &[from, to] = cut.along;
+    const bool beside = std::ranges::all_of(
+        cut.slices, [&](const v1::Slice &s) { return s.at < from || s.at > to; });
+    const std::string where = fmt::format("which lies from {} = {} to {}", command.axis,
+                                          format_shortest(from), format_shortest(to));
+    if (beside)
+        terminal.say(fmt::format("{}: no plane meets the solid, {}", out, where));
+    else
+        terminal.say(fmt::format("{}: no plane meets the solid{} in an area that squares of a side "
+                                 "of {:.3g} show",
+                                 out, command.solid.flat ? "" : ", " + where + ",", cut.side));
 }
 
 // Refused before any work is done.
@@ -128,10 +149,7 @@ Exit make(const SliceCommand &command, const SolidFrame &frame, Terminal &termin
         json["slices"].push_back(json_of(cut.slices[k], file));
         empty += cut.slices[k].contours.empty();
     }
-    if (empty == cut.slices.size())
-        terminal.say(fmt::format("{}: no plane meets the solid, which lies from {} = {} to {}",
-                                 frame.out, command.axis, format_shortest(cut.along[0]),
-                                 format_shortest(cut.along[1])));
+    if (empty == cut.slices.size()) say_empty(cut, command, frame.out, terminal);
     json["rests_on"] = cut.rests_on;
     if (command.json) terminal.put(frame_json(frame, json.dump()) + "\n");
     return done;

@@ -1,6 +1,7 @@
 #include "mesh/seams.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace fathom::mesh {
 namespace {
@@ -55,9 +56,12 @@ void leave_open(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &bo
 std::optional<double> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                               const Point &lo, const Point &hi, double thin) {
     std::vector<Slab> slabs;
-    for (std::size_t axis = 0; axis < 3; ++axis) cut_up({axis, lo[axis], hi[axis]}, slabs);
-    leave_open(evaluator, tape, boxes, lo, hi, slabs);
     std::array<std::size_t, 3> open{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        cut_up({axis, lo[axis], hi[axis]}, slabs);
+        if (!(lo[axis] < hi[axis])) open[axis] = std::numeric_limits<std::size_t>::max();
+    }
+    leave_open(evaluator, tape, boxes, lo, hi, slabs);
     for (const Slab &slab : slabs) ++open[slab.axis];
     const auto axis =
         static_cast<std::size_t>(std::min_element(open.begin(), open.end()) - open.begin());

@@ -11,7 +11,8 @@ namespace fathom::mesh {
 // Whether a box is solid but for gaps between planes at right angles to one axis: how wide these
 // gaps are together at most, in the scene's units; 0 where no float in the box has a positive field.
 // None where nothing of that kind is found. Slabs of the box are cut up until they are solid or no
-// thicker than `thin`; the gaps are at most 8 of these together. `boxes` is memory.
+// thicker than `thin`; the gaps are at most 8 of these together. The box may be flat, but is no point.
+// `boxes` is memory.
 std::optional<double> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                               const Point &lo, const Point &hi, double thin);
 

@@ -1,5 +1,6 @@
 // What is proved of a section: how far its border and the contours are apart at most, and its area
 // (docs/slices.md, 3).
+#include "mesh/seams.h"
 #include "mesh/squares.h"
 
 #include <algorithm>
@@ -53,29 +54,53 @@ Rectangle rectangle_of(const Plane2 &plane, const Square &s) {
             {plane.place(0, s.i + 1), plane.place(1, s.j + 1)}};
 }
 
+// How far a rectangle's points are from the nearest of some contours at most.
+double reach_of(const Plane2 &plane, const Lines &lines, const std::vector<std::int32_t> &near,
+                const Rectangle &r) {
+    const Real2 middle{0.5 * (double(r.lo[0]) + r.hi[0]), 0.5 * (double(r.lo[1]) + r.hi[1])};
+    double d = 2 * plane.side();
+    for (const std::int32_t chord : near)
+        d = std::min(d, to_chord(middle, lines.chords[static_cast<std::size_t>(chord)]));
+    return (d + half_diagonal_of(r)) * rounded_out;
+}
+
+// Whether parts of the solid touch in a rectangle, and nothing else is in it that is not solid.
+std::optional<double> touching_in(const Rectangle &r, FlatBoxes &boxes,
+                                  const cpu::ShortTape &tape) {
+    const Plane2 &plane = boxes.plane;
+    return seam_in(boxes.evaluator, tape, boxes.boxes, plane.point(r.lo[0], r.lo[1]),
+                   plane.point(r.hi[0], r.hi[1]), seam_thickness(plane.lattice));
+}
+
 void certify_border(const Plane2 &plane, const Squares &squares, const Lines &lines,
                     const Nearness &nearness, Evaluator &evaluator, Section &section,
                     std::vector<bool> &undecided) {
+    constexpr int seam_depth = 2; // halvings between looks for seams
     FlatBoxes boxes(plane, evaluator);
     double inside = squares.inside, open_area = 0;
     for (std::size_t k = 0; k < squares.open.size(); ++k) {
         const Square &square = squares.open[k];
+        const cpu::ShortTape &tape = *squares.tapes[static_cast<std::size_t>(square.tile)];
         std::vector<Rectangle> open{rectangle_of(plane, square)};
         const std::vector<std::int32_t> near = nearness.about(square);
+        // Counted as solid, or as open where it has a gap.
+        const auto is_seam = [&](const Rectangle &r) {
+            if (!(reach_of(plane, lines, near, r) > plane.side())) return false;
+            const std::optional<double> width = touching_in(r, boxes, tape);
+            if (width) (*width > 0 ? open_area : inside) += area_of(r);
+            return width.has_value();
+        };
         // What is far from all contours is open to the end where the plane lies in a face.
         const int halvings = near.empty() ? halvings_of_squares / 2 : halvings_of_squares;
-        for (int level = 0; level < halvings && !open.empty(); ++level)
-            open = open_quarters(boxes, *squares.tapes[static_cast<std::size_t>(square.tile)], open,
-                                 inside);
+        for (int level = 0; !open.empty(); ++level) {
+            if (square.solid() && level % seam_depth == 0) std::erase_if(open, is_seam);
+            if (level == halvings) break;
+            open = open_quarters(boxes, tape, open, inside);
+        }
         double farthest = 0;
         for (const Rectangle &r : open) {
             open_area += area_of(r);
-            const Real2 middle{0.5 * (double(r.lo[0]) + r.hi[0]),
-                               0.5 * (double(r.lo[1]) + r.hi[1])};
-            double d = 2 * plane.side();
-            for (const std::int32_t chord : near)
-                d = std::min(d, to_chord(middle, lines.chords[static_cast<std::size_t>(chord)]));
-            farthest = std::max(farthest, (d + half_diagonal_of(r)) * rounded_out);
+            farthest = std::max(farthest, reach_of(plane, lines, near, r));
         }
         if (farthest <= plane.side())
             section.to_contour = std::max(section.to_contour, farthest);
@@ -131,7 +156,7 @@ void certify_contours(const Plane2 &plane, const Squares &squares, const Ways &w
         values_at(evaluator, *plane.field.whole, points, values);
         std::vector<Place2> still;
         for (std::size_t k = 0; k < left.size(); ++k)
-            if ((values[2 * k] < 0) == (values[2 * k + 1] < 0)) still.push_back(left[k]);
+            if ((values[2 * k] <= 0) == (values[2 * k + 1] <= 0)) still.push_back(left[k]);
         if (still.size() < left.size())
             section.to_section =
                 std::max(section.to_section, (way + half_step + rounding) * rounded_out);

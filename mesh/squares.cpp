@@ -26,7 +26,7 @@ void sign_corners(const Plane2 &plane, Squares &squares, Evaluator &evaluator) {
         for (int c = 0; c < 4; ++c) {
             const Square at{s.i + (c == 1 || c == 2), s.j + c / 2};
             const auto found = std::ranges::lower_bound(corners, at);
-            if (values[static_cast<std::size_t>(found - corners.begin())] < 0)
+            if (values[static_cast<std::size_t>(found - corners.begin())] <= 0)
                 s.signs |= static_cast<std::uint8_t>(1 << c);
         }
 }
@@ -90,7 +90,7 @@ void find_roots(const Plane2 &plane, Ways &ways, Evaluator &evaluator) {
         }
         values_at(evaluator, *plane.field.whole, points, values);
         for (std::size_t k = 0; k < n; ++k)
-            (values[k] < 0 ? in[k] : out[k]) = 0.5f * (in[k] + out[k]);
+            (values[k] <= 0 ? in[k] : out[k]) = 0.5f * (in[k] + out[k]);
     }
     const double margin = std::max(edge_margin * plane.side(), 2 * plane.lattice.ulp);
     for (std::size_t k = 0; k < n; ++k) {
@@ -166,7 +166,7 @@ void FlatBoxes::run(std::size_t count, const cpu::ShortTape &tape) {
 }
 
 Space FlatBoxes::space(std::size_t k, double half) const {
-    return space_of(evaluator, 16 * (k / 8) + k % 8, half, plane.lattice.ulp, true);
+    return space_of(evaluator, 16 * (k / 8) + k % 8, half, plane.lattice.ulp, true, true);
 }
 
 double half_diagonal_of(const Rectangle &r) {

@@ -8,10 +8,11 @@ namespace fathom::mesh {
 
 struct Square {
     std::int32_t i = 0, j = 0; // its least corner, in squares of its level
-    // Bit c is set where the field is negative at corner c: (0,0), (1,0), (1,1), (0,1).
+    // Bit c is set where the field is not positive at corner c: (0,0), (1,0), (1,1), (0,1).
     std::uint8_t signs = 0;
     std::int32_t tile = none; // whose tape holds in it
-    bool crossed() const { return signs != 0 && signs != 15; }
+    bool crossed() const { return signs != 0 && !solid(); }
+    bool solid() const { return signs == 15; }
     bool alone() const { return signs != 5 && signs != 10; } // not two pieces of border
     friend auto operator<=>(const Square &a, const Square &b) {
         return a.j != b.j ? a.j <=> b.j : a.i <=> b.i;

@@ -46,7 +46,7 @@ struct Slice {
     std::vector<PlaneBox> undecided; /**< the first 1,000 of them */
     std::size_t undecided_squares = 0;
     Enclosure area;           /**< of the section: proved */
-    double contours_area = 0; /**< of what the contours bound */
+    double contours_area = 0; /**< of what the contours bound; it may lie a little beside `area` */
 };
 
 struct Slices {

@@ -90,6 +90,34 @@ TEST_CASE("what cannot be sliced says why, and writes nothing") {
     CHECK(shell(folder, "fathom mesh ball.sdf -o b.svg").exit == 2);
 }
 
+TEST_CASE("what is said of planes without a contour is true, and areas lie in what is proved") {
+    ScratchFolder folder;
+    folder.write("ball.sdf", "sphere(1)\n");
+    folder.write("seam.sdf", "box(1) | box(1).translate(x: 1)\n");
+    const auto cut = [&](const std::string &arguments) {
+        return shell(folder, "fathom slice " + arguments + " -o a.svg --json --resolution 32");
+    };
+    CHECK(contains(cut("ball.sdf --z 5").err, "no plane meets the solid, which lies from z = -1"));
+    const std::string touched = cut("ball.sdf --z 1").err;
+    CHECK(contains(touched, "no plane meets the solid, which lies from z = -1"));
+    CHECK(contains(touched, "in an area that squares of a side of 0.0"));
+    const Result seam = cut("seam.sdf --x 0.5");
+    CHECK(seam.err.empty());
+    CHECK(Json::parse(seam.out)["slices"][0]["status"] == "certified");
+    // Corners of contours that a coarse lattice rounds off.
+    folder.write("star.sdf", "for i in 0..5 { cone(0.3, 1).rotate(i * 72deg, axis: Z) }\n");
+    for (const char *side : {"0.5", "0.3", "0.2"}) {
+        const Result made = shell(folder, std::string("fathom slice star.sdf --z 0.01 -o a.svg "
+                                                      "--json --tolerance ") +
+                                              side);
+        REQUIRE(made.exit == 0);
+        const Json area = Json::parse(made.out)["slices"][0]["area"];
+        INFO(area.dump());
+        CHECK(area["least"] <= area["value"]);
+        CHECK(area["value"] <= area["most"]);
+    }
+}
+
 TEST_CASE("a scene of flat shapes is drawn without a height, as exactly as a slice") {
     ScratchFolder folder;
     folder.write("plate.sdf", "param r = 4 in 1..5\n"
@@ -107,6 +135,11 @@ TEST_CASE("a scene of flat shapes is drawn without a height, as exactly as a sli
     CHECK(shell(folder, "fathom slice plate.sdf -D r=5 -o plate.dxf").exit == 0);
     CHECK(contains(folder.read("plate.dxf"), "POLYLINE"));
     CHECK(shell(folder, "fathom slice plate.sdf --part circle -o c.png --size 64x64").exit == 0);
+    // A drawing has no height to be told of.
+    folder.write("foil.sdf", "rectangle([10, 1e-4]).rotate(0.3)\ncircle(1)\n");
+    const Result foil = shell(folder, "fathom slice foil.sdf -o foil.svg --resolution 16");
+    CHECK(contains(foil.err, "may hold border"));
+    CHECK_FALSE(contains(foil.err, "height"));
     // With a height, or to other commands, flat shapes are what they were.
     CHECK(contains(shell(folder, "fathom slice plate.sdf --z 0 -o a.svg").err, "flat-shape"));
     CHECK(contains(shell(folder, "fathom mesh plate.sdf -o a.stl").err, "flat-shape"));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <tuple>
 
 using namespace fathom;
 
@@ -187,8 +188,30 @@ TEST_CASE("files of contours") {
     CHECK(pixels[5 * 20 + 6] == Approx(0).margin(1e-5)); // in the hole
 }
 
-TEST_CASE("a plane in a face of the solid ends soon, and claims nothing there") {
+TEST_CASE("a plane in a face of the solid has the face") {
     const mesh::Section made = cut("box(1) | sphere(0.3).translate(x: 2)", 2, 0.5f, 200);
-    CHECK_FALSE(made.undecided.empty());
-    CHECK((made.area.lo < 0.1 && made.area.hi > 0.9));
+    CHECK(made.undecided.empty());
+    CHECK(made.contours.size() == 1);
+    CHECK((made.area.lo <= 1 && 1 <= made.area.hi && made.area.lo > 0.95));
+}
+
+TEST_CASE("a face that floats hide from the plane ends soon, and claims nothing there") {
+    const mesh::Section made =
+        cut("box(1).rotate(0.3, axis: [1, 2, 3]).rotate(-0.3, axis: [1, 2, 3])", 2, 0.5f, 200);
+    CHECK((made.area.lo <= 1 && made.area.hi >= 0.99));
+}
+
+TEST_CASE("where parts touch there is no contour, along a seam or in its plane") {
+    const char *halves = "box(1).translate(x: 0.5).mirror(X)",
+               *thirds =
+                   "box([1.1, 1, 1]).translate(x: 1.85) | box([1.1, 1, 1]).translate(x: 0.75)";
+    for (const auto &[text, axis, at, area] :
+         {std::tuple{halves, 2, 0.1f, 2.0}, {halves, 0, 0.0f, 1.0}, {thirds, 1, 0.2f, 2.2}}) {
+        INFO(text << " across " << axis);
+        const mesh::Section made = cut(text, static_cast<std::size_t>(axis), at, 60);
+        CHECK(made.contours.size() == 1);
+        CHECK(made.undecided.empty());
+        CHECK((made.area.lo <= area && area <= made.area.hi && made.area.lo > 0.97 * area));
+        CHECK(mesh::area_of(made.contours) == Approx(area).epsilon(1e-3));
+    }
 }
