@@ -117,7 +117,8 @@ Certificate certify(const Field &field, const Settings &settings, const Made &ma
                     .allowed = side + made.simplified,
                     .own = made.simplified == 0,
                     .earlier = earlier,
-                    .by_root = Grid(origin, side)};
+                    // Boxes of twice what is allowed are looked up: in no more than five a side.
+                    .by_root = Grid(origin, std::max(side, 0.5 * (side + made.simplified)))};
     certificate.used_bound = field.proved;
     fill(inquiry);
     const double from = progress.from, to = progress.to;
