@@ -13,7 +13,8 @@ namespace fathom::v1 {
 namespace {
 
 constexpr int most_cells = 8000;
-constexpr double simplify_from = 0.8; // of the progress
+constexpr float farthest_bounds = 1e9f; // the square of a square of it is a float
+constexpr double simplify_from = 0.8;   // of the progress
 
 Mesh without_mesh(MeshStatus status, std::string message) {
     Mesh mesh;
@@ -125,6 +126,12 @@ bool good(const MeshOptions &options) {
     return true;
 }
 
+bool too_far(const std::optional<Box> &bounds) {
+    for (std::size_t i = 0; bounds && i < 3; ++i)
+        if (!(bounds->lo[i] >= -farthest_bounds && bounds->hi[i] <= farthest_bounds)) return true;
+    return false;
+}
+
 fathom::mesh::Format inner(MeshFormat format) {
     using fathom::mesh::Format;
     switch (format) {
@@ -174,8 +181,10 @@ Refusal refusal_of(fathom::mesh::Failure failure, const fathom::mesh::Point &pla
                 "that is too fine: a mesh has at most 8,192 cells a side, and single "
                 "precision has to tell them apart where the solid is; take a larger "
                 "tolerance, or move the solid to the origin"};
+    case Failure::Outside: return {MeshStatus::Empty, "no point of the solid lies in the bounds"};
     case Failure::TooMany:
-        return {MeshStatus::TooLarge, "that takes too many cells: take a larger tolerance"};
+        return {MeshStatus::TooFine, "that is too fine, and takes too many cells: take a larger "
+                                     "tolerance or a smaller resolution"};
     case Failure::Contradicted:
         return {MeshStatus::Contradicted,
                 fmt::format("near [{}, {}, {}] the field's sign contradicts its bound; where the "
@@ -190,6 +199,10 @@ Refusal refusal_of(const Scene &scene, const MeshOptions &options) {
         return {MeshStatus::BadOptions,
                 "a tolerance is a number above 0, a resolution 1 to 8,000, and bounds "
                 "are finite, the lower ones first"};
+    if (too_far(options.bounds))
+        return {MeshStatus::BadOptions,
+                "bounds lie within 1e9 of the origin: farther out no cells of single precision "
+                "show a solid"};
     if (!hold_at(scene.facts(), options.time))
         return {MeshStatus::BadOptions, beyond_proof(scene.facts())};
     return {};

@@ -369,11 +369,7 @@ struct Reader {
         add_solid_rows(sub, mesh.solid);
         for (const OptionRow &row : solid_film_rows(mesh.solid)) add_row(sub, row);
         add_row(sub, units_row(mesh.solid, "for .3mf (mm unless said) and .glb (m unless said)"));
-        sub->add_option("--simplify", mesh.simplify,
-                        "fewer triangles, no farther than this from those of the cells, in the "
-                        "scene's units")
-            ->type_name("TOL")
-            ->check(CLI::PositiveNumber);
+        add_row(sub, simplify_row(mesh.simplify));
         sub->add_flag("--parts", mesh.parts,
                       "each part of the scene as an object of its own: .glb, .obj and .3mf");
         sub->add_flag("--json", mesh.json,

@@ -128,8 +128,12 @@ void say_simplified(const v1::Mesh &mesh, const std::string &what, double tolera
                                  what, s.colored_triangles, mesh.triangles.size()));
 }
 
-std::string library_of(const std::string &out) { // of an OBJ
-    return std::filesystem::path(out).replace_extension(".mtl").string();
+// Of an OBJ. A `#` begins a comment where the OBJ names it.
+std::string library_of(const std::string &out) {
+    std::filesystem::path path(out);
+    std::string name = path.stem().string();
+    std::ranges::replace(name, '#', '.');
+    return path.replace_filename(name + ".mtl").string();
 }
 
 // What there is to write, in the order of the file.

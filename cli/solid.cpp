@@ -79,6 +79,9 @@ Solid open_solid(const SolidArguments &arguments, Terminal &terminal, bool again
     Solid solid;
     v1::CompileResult result = compiled(arguments);
     solid.files = result.files;
+    if (arguments.bounds) // what is cut off here has an end, and no camera looks at it
+        std::erase_if(result.diagnostics,
+                      [](const v1::Diagnostic &d) { return d.code == "nothing-framed"; });
     solid.exit = again && result ? done : report(result, terminal);
     if (solid.exit != done) return solid;
     solid.exit = usage_error; // unless all is well

@@ -68,6 +68,18 @@ OptionRow units_row(SolidArguments &solid, const std::string &what_for) {
             }};
 }
 
+OptionRow simplify_row(double &tolerance) {
+    return {"--simplify", "TOL",
+            "fewer triangles, no farther than this from those of the cells, in the scene's units",
+            [&](const std::string &word) {
+                const std::optional<double> number = parse_number(word);
+                if (!number || !(*number > 0) || !fits_single(*number))
+                    return fmt::format("wants a number above 0, as 0.01, not `{}`", word);
+                tolerance = *number;
+                return std::string();
+            }};
+}
+
 std::vector<OptionRow> slice_rows(SliceCommand &command) {
     std::vector<OptionRow> rows;
     for (const char axis : {'x', 'y', 'z'})

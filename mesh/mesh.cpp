@@ -42,9 +42,15 @@ Failure box_of(const ir::Scene &scene, const Settings &settings, ir::Box &box) {
     ir::Box space{{-far, -far, -far}, {far, far, far}};
     const bool known = settings.bounds || (!scene.endless && scene.bounds.finite());
     if (known) space = settings.bounds ? *settings.bounds : scene.bounds;
+    if (settings.bounds && !scene.endless && scene.bounds.finite())
+        for (std::size_t i = 0; i < 3; ++i) { // it need not be looked for in all of wide bounds
+            space.lo[i] = std::max(space.lo[i], scene.bounds.lo[i]);
+            space.hi[i] = std::min(space.hi[i], scene.bounds.hi[i]);
+            if (!(space.lo[i] < space.hi[i])) return Failure::Outside;
+        }
     double work = box_work;
     box = cpu::solid_box(scene, scene.distance, space, settings.time, work);
-    if (box.empty()) return Failure::Empty;
+    if (box.empty()) return settings.bounds ? Failure::Outside : Failure::Empty;
     for (std::size_t i = 0; i < 3; ++i)
         if (!known && !(box.lo[i] > -far / 2 && box.hi[i] < far / 2)) return Failure::Endless;
     return Failure::None;
@@ -81,7 +87,8 @@ Made make_mesh(const ir::Scene &scene, const Settings &settings) {
     if (made.octree.full) return fail(Failure::TooMany);
     progress.phase(1);
     std::vector<Cell> divided;
-    const Failure failure = finish_mesh(made, field, settings, 2 * most_nodes, divided, progress);
+    Failure failure = finish_mesh(made, field, settings, 2 * most_nodes, divided, progress);
+    if (failure == Failure::Empty && settings.bounds) failure = Failure::Outside;
     if (failure != Failure::None) return fail(failure);
     return made;
 }

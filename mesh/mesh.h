@@ -26,6 +26,7 @@ enum class Failure : std::uint8_t {
     None,
     Cancelled,
     Empty,       // no point lies in the solid
+    Outside,     // … of those in the bounds
     Unseen,      // something may lie in it, but no corner of the finest cells
     Endless,     // no box holds the solid
     TooFine,     // more than 8,192 cells a side, or floats cannot tell such cells apart

@@ -23,11 +23,12 @@ std::string word_of(std::string_view name) {
     return word.empty() ? "scene" : word;
 }
 
-// The rest of a line may hold blanks, but no line's end.
+// The rest of a line may hold blanks, but no line's end and no comment.
 std::string line_of(std::string_view name) {
     std::string line(name);
     for (char &c : line)
         if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '_';
+    std::ranges::replace(line, '#', '.');
     return line;
 }
 

@@ -27,6 +27,15 @@ double diagonal(const Box &box) {
 double longest(const Box &box) {
     return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
 }
+// How far from its middle all is free. Out where nobody looks unless bounds say so, what floats lose
+// matters beside half the diagonal.
+double reach(const Box &box) {
+    double farthest = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        farthest = std::max({farthest, std::fabs(box.lo[i]), std::fabs(box.hi[i])});
+    const double half = 0.5 * diagonal(box);
+    return farthest <= endless_from ? half : half + 8 * std::ldexp(farthest, -23);
+}
 std::array<double, 3> middle(const Box &box) {
     std::array<double, 3> m{};
     for (std::size_t i = 0; i < 3; ++i) m[i] = 0.5 * (box.lo[i] + box.hi[i]);
@@ -123,7 +132,7 @@ struct Search {
                 const double far = far_of(children[k]), at = middle(children[k])[axis];
                 // Nothing solid by its range, or by the step that is safe from its middle.
                 if (shortener.result_lo[k] > 0 ||
-                    shortener.result_lo[count + k] > 0.5 * diagonal(children[k]))
+                    shortener.result_lo[count + k] > reach(children[k]))
                     continue;
                 if (shortener.result_hi[k] <= 0) known = std::max(known, far);
                 if (shortener.result_hi[count + k] <= 0) known = std::max(known, up ? at : -at);

@@ -50,11 +50,12 @@ struct MeshOptions {
 enum class MeshStatus {
     Done,
     Cancelled,
-    Empty,     /**< no point lies in the solid */
+    Empty,     /**< no point lies in the solid, or none of those in `bounds` */
     TooCoarse, /**< something may lie in it, but no corner of the finest cells */
     Endless,   /**< no box holds the solid: `bounds` cuts it off */
-    TooFine,   /**< more than 8,192 cells a side, or single precision cannot tell them apart */
-    TooLarge,  /**< more cells than are counted, or than there is memory for */
+    TooFine,   /**< more than 8,192 cells a side, or than are counted, or single precision cannot
+                *   tell them apart */
+    TooLarge,  /**< more than there is memory for */
     Contradicted, /**< signs of the field are not as was stated: `estimate:` or `lipschitz:` is wrong */
     BadOptions /**< no mesh can have these options */
 };

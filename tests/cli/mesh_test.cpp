@@ -65,7 +65,18 @@ TEST_CASE("--simplify writes fewer triangles, and the certificate is of these") 
     CHECK(contains(made.out, "{\"status\":\"certified\","));
     CHECK(contains(made.out, "\"simplified\":{\"triangles_before\":"));
     CHECK(folder.read("coarse.stl").size() < folder.read("fine.stl").size() / 2);
-    CHECK(shell(folder, "fathom mesh part.sdf --simplify -1 -o a.stl").exit == 2);
+    for (const char *wrong : {"-1", "0", "nan"}) {
+        const Result made =
+            shell(folder, std::string("fathom mesh part.sdf -o a.stl --simplify ") + wrong);
+        CHECK(made.exit == 2);
+        CHECK(contains(made.err, "wants a number above 0"));
+    }
+    // A tolerance of many cells takes no longer to certify than one of few.
+    folder.write("ball.sdf", "sphere(1)\n");
+    const Result all =
+        shell(folder, "fathom mesh ball.sdf --resolution 32 --simplify 10 --json -o ball.stl");
+    CHECK(all.exit == 0);
+    CHECK(contains(all.out, "certified"));
 }
 
 TEST_CASE("what has no mesh says why, and writes nothing") {
@@ -165,6 +176,10 @@ TEST_CASE("an OBJ and its materials are both written, or neither") {
     CHECK(contains(full.err, "b.obj"));
     for (const auto &entry : fs::directory_iterator(folder.path()))
         CHECK((entry.path().filename() == "ball.sdf" || entry.path().filename() == "a.mtl"));
+    // What begins a comment in an OBJ is in no name of its materials.
+    CHECK(shell(folder, "fathom mesh ball.sdf --resolution 8 -o 'c#1.obj'").exit == 0);
+    CHECK(contains(folder.read("c#1.obj"), "mtllib c.1.mtl\n"));
+    CHECK(fs::exists(folder / "c.1.mtl"));
     // A name that an OBJ of the scene's own materials would overwrite.
     CHECK(shell(folder, "fathom mesh ball.sdf --resolution 8 -o ball.obj").exit == 0);
     CHECK(fs::exists(folder / "ball.mtl"));
