@@ -15,12 +15,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A number of the mesh, and between what the solid's is proved to lie.
+// A number, and between what the solid's is proved to lie.
 struct Row {
     std::string name, unit;
     double value = 0;
     std::optional<v1::Enclosure> proved;
 };
+
+// The number that is printed: the mesh's or, where that is proved to be off, the nearest that may be.
+double best(double of_mesh, const v1::Enclosure &proved) {
+    return std::max(proved.lo, std::min(of_mesh, proved.hi));
+}
 
 // The power of the unit that a number has: 1 a length, 2 an area, 3 a volume.
 std::string unit_of(const MeasureCommand &command, int power) {
@@ -40,22 +45,24 @@ v1::Enclosure times(const v1::Enclosure &e, double factor) {
 
 std::vector<Row> rows_of(const v1::Measures &of, const MeasureCommand &command) {
     const std::string length = unit_of(command, 1);
-    std::vector<Row> rows{{"volume", unit_of(command, 3), of.mesh_volume, of.volume},
+    const double volume = best(of.mesh_volume, of.volume);
+    std::vector<Row> rows{{"volume", unit_of(command, 3), volume, of.volume},
                           {"area", unit_of(command, 2), of.mesh_area, {}}};
     if (command.density) {
         const double one = mass_of_one(command);
-        rows.push_back(
-            {"mass", length.empty() ? "" : "g", one * of.mesh_volume, times(of.volume, one)});
+        rows.push_back({"mass", length.empty() ? "" : "g", one * volume, times(of.volume, one)});
     }
     for (std::size_t i = 0; i < 3; ++i) {
         const char axis = "xyz"[i];
-        const double lo = of.mesh_box.lo[i], hi = of.mesh_box.hi[i];
+        const double lo = best(of.mesh_box.lo[i], of.least[i]),
+                     hi = best(of.mesh_box.hi[i], of.greatest[i]);
         rows.push_back({fmt::format("size {}", axis), length, hi - lo,
                         v1::Enclosure{std::max(0.0, of.greatest[i].lo - of.least[i].hi),
                                       of.greatest[i].hi - of.least[i].lo}});
         rows.push_back({fmt::format("from {}", axis), length, lo, of.least[i]});
         rows.push_back({fmt::format("to {}", axis), length, hi, of.greatest[i]});
-        rows.push_back({fmt::format("centre {}", axis), length, of.mesh_center[i], of.center[i]});
+        rows.push_back({fmt::format("centre {}", axis), length,
+                        best(of.mesh_center[i], of.center[i]), of.center[i]});
     }
     return rows;
 }
@@ -76,8 +83,8 @@ std::string printed_end(double number, double scale, bool up) {
 
 void put_table(const std::string &title, const std::vector<Row> &rows, double scale,
                Terminal &terminal) {
-    terminal.put(fmt::format("{}\n{:24}{:>14}{:>16}{:>14}\n", title, "", "of the mesh", "at least",
-                             "at most"));
+    terminal.put(
+        fmt::format("{}\n{:24}{:>14}{:>16}{:>14}\n", title, "", "value", "at least", "at most"));
     for (const Row &row : rows) {
         const std::string name =
             row.unit.empty() ? row.name : fmt::format("{} ({})", row.name, row.unit);
@@ -94,19 +101,19 @@ Json json_of(const v1::Enclosure &e) {
     const auto end = [](double d) { return std::isfinite(d) ? Json(d) : Json(); };
     return {{"least", end(e.lo)}, {"most", end(e.hi)}};
 }
-Json json_of(double value, const std::optional<v1::Enclosure> &proved) {
-    Json json{{"value", value}};
-    if (proved) json.update(json_of(*proved));
+Json json_of(double of_mesh, const v1::Enclosure &proved) {
+    Json json{{"value", best(of_mesh, proved)}};
+    json.update(json_of(proved));
     return json;
 }
 
 Json json_of(const v1::Measures &of, const MeasureCommand &command) {
     Json json;
     json["volume"] = json_of(of.mesh_volume, of.volume);
-    json["area"] = json_of(of.mesh_area, {});
+    json["area"] = {{"value", of.mesh_area}};
     if (command.density) {
         const double one = mass_of_one(command);
-        json["mass"] = json_of(one * of.mesh_volume, times(of.volume, one));
+        json["mass"] = json_of(one * best(of.mesh_volume, of.volume), times(of.volume, one));
     }
     for (const char *name : {"center", "from", "to"}) json[name] = Json::array();
     for (std::size_t i = 0; i < 3; ++i) {
@@ -235,6 +242,7 @@ Exit run(const MeasureCommand &command, Terminal &terminal) {
         options.progress = work.next();
         subject.of = v1::measure(subject.scene, options);
         heed_interrupts();
+        if (subject.line > 0 && subject.of.status == v1::MeshStatus::Empty) continue;
         if (!subject.of) {
             terminal.finish_progress();
             return say_refusal(file, fmt::format("measures of `{}`", subject.name),
@@ -259,7 +267,12 @@ Exit run(const MeasureCommand &command, Terminal &terminal) {
         Json json = json_of(subjects[0].of, command);
         json["unit"] = command.solid.units.empty() ? Json() : Json(command.solid.units);
         if (command.parts) json["parts"] = Json::array();
+        if (command.parts) json["empty"] = Json::array();
         for (std::size_t k = 1; k < subjects.size(); ++k) {
+            if (!subjects[k].of) {
+                json["empty"].push_back(subjects[k].name);
+                continue;
+            }
             Json part{{"name", subjects[k].name}, {"line", subjects[k].line}};
             part.update(json_of(subjects[k].of, command));
             json["parts"].push_back(std::move(part));
@@ -269,10 +282,15 @@ Exit run(const MeasureCommand &command, Terminal &terminal) {
         terminal.put(json.dump() + "\n");
         return done;
     }
-    for (const Subject &subject : subjects)
-        put_table(subject.line > 0 ? fmt::format("{}, line {}", subject.name, subject.line)
-                                   : subject.name,
-                  rows_of(subject.of, command), size_of(subject.of), terminal);
+    for (const Subject &subject : subjects) {
+        const std::string title = subject.line > 0
+                                      ? fmt::format("{}, line {}", subject.name, subject.line)
+                                      : subject.name;
+        if (!subject.of)
+            terminal.put(title + "\n  holds no point\n");
+        else
+            put_table(title, rows_of(subject.of, command), size_of(subject.of), terminal);
+    }
     for (const Between &between : clearances) put_clearance(between, command, terminal);
     return done;
 }

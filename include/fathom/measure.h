@@ -35,7 +35,7 @@ struct Measures {
     std::array<Enclosure, 3> center;
     std::array<Enclosure, 3> least, greatest; /**< the ends of the solid's box */
     /** Numbers of the mesh, of which nothing is proved: an error of the order of the square of its
-     *  cells' side for a smooth surface, of the side at creases. */
+     *  cells' side for a smooth surface, of the side at creases. They may lie beside what is proved. */
     double mesh_volume = 0, mesh_area = 0;
     std::array<double, 3> mesh_center{};
     Box mesh_box;

@@ -67,6 +67,36 @@ TEST_CASE("parts are measured by their names, and how far they are apart") {
     CHECK((mesh.exit == 0 && mesh.out != all.out));
 }
 
+TEST_CASE("a printed number lies in what is proved of it") {
+    ScratchFolder folder;
+    folder.write("needle.sdf", "cone(0.05, 2)\n"); // its tip is lost by coarse cells
+    const Result made =
+        shell(folder, "fathom measure needle.sdf --resolution 8 --density 1 --json");
+    REQUIRE(made.exit == 0);
+    const Json json = Json::parse(made.out);
+    std::vector<Json> rows{json["volume"], json["mass"]};
+    for (const char *name : {"center", "from", "to"})
+        for (const Json &row : json[name]) rows.push_back(row);
+    for (const Json &row : rows) {
+        INFO(row.dump());
+        CHECK(holds(row, row["value"].get<double>()));
+    }
+}
+
+TEST_CASE("a part that holds no point is listed as empty") {
+    ScratchFolder folder;
+    folder.write("pair.sdf", "let none = sphere(1) & sphere(1).translate(x: 5)\nbox(1)\nnone\n"
+                             "sphere(1).translate(x: 9)\n");
+    const Result made = shell(folder, "fathom measure pair.sdf --parts --resolution 16 --json");
+    INFO(made.err);
+    REQUIRE(made.exit == 0);
+    const Json json = Json::parse(made.out);
+    CHECK(json["parts"].size() == 2);
+    CHECK(json["empty"] == Json{"none"});
+    const Result table = shell(folder, "fathom measure pair.sdf --parts --resolution 16");
+    CHECK(contains(table.out, "none, line 3\n  holds no point\n"));
+}
+
 TEST_CASE("what cannot be measured says why") {
     ScratchFolder folder;
     folder.write("ground.sdf", "plane(Y, 0)\n");
@@ -92,6 +122,12 @@ TEST_CASE("what cannot be measured says why") {
     fails("ball.sdf --density 0", 2, "above 0");
     fails("ball.sdf --units furlong", 2, "um, mm, cm, m, in or ft");
     fails("ball.sdf --tolerance 1e-9", 2, "too fine");
-    CHECK(shell(folder, "fathom measure ground.sdf --resolution 16 --bounds=-1,-1,-1,1,1,1").exit ==
+    fails("ball.sdf --bounds=5,5,5,6,6,6", 1, "no point of the solid lies in the bounds");
+    fails("ball.sdf --bounds=-1e20,-2,-2,2,2,2", 2, "within 1e9 of the origin");
+    const std::string cut = " --resolution 16 --bounds=-1,-1,-1,1,1,1";
+    const Result ground = shell(folder, "fathom measure ground.sdf" + cut);
+    CHECK(ground.exit == 0);
+    CHECK(ground.err.empty()); // it has an end now, and no camera looks
+    CHECK(shell(folder, "fathom measure ball.sdf --bounds=-1e8,-2,-2,2,2,2 --resolution 16").exit ==
           0);
 }
