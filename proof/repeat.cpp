@@ -19,9 +19,9 @@ constexpr int max_per_axis = 9, max_copies = 128;
 
 // Of like copies at j*cell, those that can hold the nearest point when the evaluator is at x (own
 // cell: |x| <= cell/2): a point s of the motif, lo <= s <= hi, is nearest in the copy with |x - s -
-// j*cell| <= cell/2. For x in [0, cell/2].
+// j*cell| <= cell/2.
 void copies_that_matter(double lo, double hi, double cell, double &least, double &most) {
-    least = std::ceil((0 - hi) / cell - 0.5 + 1e-9);
+    least = std::ceil((-cell / 2 - hi) / cell - 0.5 + 1e-9);
     most = std::floor((cell / 2 - lo) / cell + 0.5 - 1e-9);
 }
 

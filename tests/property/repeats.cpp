@@ -59,7 +59,7 @@ Lattice random_lattice(Chance &random) {
         out.motif += ".translate([";
         for (int a = 0; a < 3; ++a)
             out.motif += (a ? ", " : "") +
-                         n(std::array{0.0, 0.0, 0.0, 0.2, -0.25, 0.3, 0.5}[random.pick(7)]);
+                         n(std::array{0.0, 0.0, 0.0, 0.2, -0.25, 0.3, 0.5, 1.3}[random.pick(8)]);
         out.motif += "])";
     }
     out.mirrored = random.often();
@@ -122,7 +122,7 @@ class Union {
         for (std::size_t a = 0; a < 3; ++a) {
             if (!(lattice_.cell[a] > 0)) continue;
             const int own = int(std::lround(p[a] / lattice_.cell[a] + middle(a)));
-            lo[a] = own - 2, hi[a] = own + 2;
+            lo[a] = own - 4, hi[a] = own + 4;
             if (lattice_.count[a] == 0) continue;
             lo[a] = std::clamp(lo[a], 0, lattice_.count[a] - 1);
             hi[a] = std::clamp(hi[a], 0, lattice_.count[a] - 1);
