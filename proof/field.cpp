@@ -308,6 +308,7 @@ std::optional<double> unwound_bound(Flattening &context, const Ranges &ranges, N
                                     const Domain &domain, const Budget &budget) {
     const Tape tape = flatten_unwound(context, field);
     if (!tape.winds_about || tape.too_large) return {};
+    if (tape.near) return {}; // a point and what it is turned to need not both be near
     const auto zone = turned_about(domain, *tape.winds_about);
     if (!zone) return {};
     Cell box = outer_box(*zone);

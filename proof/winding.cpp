@@ -74,7 +74,9 @@ struct Follower {
 
     // Does its value stay when w and the angle turn?
     bool stays(NodeId id) {
-        if (!graph.reads(id).point) return true;
+        const Graph::Reads reads = graph.reads(id);
+        if (reads.normal || reads.direction) return false;
+        if (!reads.point) return true;
         if (const auto it = known.find(id); it != known.end()) return it->second;
         known[id] = false; // while it is looked at
         return known[id] = stays_by_parts(id) || stays_by_sums(id);
