@@ -45,8 +45,8 @@ struct FieldBound {
     double value_a = 0, value_b = 0;
     bool known_sides = false; // there are such points
     bool seen_jump = false;   // they differ as much however near they are taken
-    bool held_params =
-        false; // with params in the middle of their ranges, and the time at its begin
+    bool held_params = false; // they were tried with params in the middle of their ranges
+    bool held_time = false;   // … with the time at its begin
     std::size_t evaluations = 0;
 };
 

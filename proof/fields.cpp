@@ -301,7 +301,8 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
         const auto [one_side, other_side] = two_points(b.side_a, b.side_b, dims);
         const auto [one, other] = two_numbers(b.value_a, b.value_b);
         const std::string held =
-            b.held_params ? ", with each param in the middle of its range, at time 0" : "";
+            std::string(b.held_params ? ", with each param in the middle of its range" : "") +
+            (b.held_time ? ", at time " + number_text(ranges.time.lo) : "");
         if (b.seen_jump) {
             if (Diagnostic *d =
                     report(id, Code::FieldJump, what + " jumps near " + point_text(b.where, dims)))

@@ -43,7 +43,7 @@ bool halve(Machine &machine, Sides &sides) {
 }
 
 // A jump keeps its gap as the way over it is halved; that of a slope, however steep, goes with it.
-bool jumps(Machine &machine, Sides sides) {
+bool jumps(Machine &machine, Sides &sides) {
     constexpr int halvings = 10;
     const double before = sides.gap();
     for (int k = 0; k < halvings; ++k)
@@ -59,7 +59,8 @@ void find_sides(const Tape &tape, Ranges ranges, FieldBound &out, double scale,
     std::unordered_set<std::uint32_t> whole; // params
     for (const auto *block : {&tape.once, &tape.each})
         for (const Instruction &in : *block) {
-            out.held_params = out.held_params || in.op == Op::Param || in.op == Op::Time;
+            out.held_params = out.held_params || in.op == Op::Param;
+            out.held_time = out.held_time || in.op == Op::Time;
             if (in.op == Op::Param && (in.type == ir::Type::Int || in.type == ir::Type::Bool))
                 whole.insert(in.payload);
         }
@@ -83,8 +84,11 @@ void find_sides(const Tape &tape, Ranges ranges, FieldBound &out, double scale,
         const auto sides = sides_at(machine, a, b);
         if (sides && (!widest || sides->gap() > widest->gap())) widest = sides;
     }
-    if (widest) take(*widest);
-    out.seen_jump = widest && jumps(machine, *widest);
+    if (widest) {
+        Sides nearer = *widest;
+        out.seen_jump = jumps(machine, nearer);
+        take(out.seen_jump ? *widest : nearer); // what does not jump is told where it nearly meets
+    }
     if (out.seen_jump) return;
     // Places spread evenly by the multiples of the plastic number's kin in three dimensions (Roberts 2018).
     constexpr std::array<double, 3> spread{0.8191725133961645, 0.6710436067037893,
@@ -106,7 +110,8 @@ void find_sides(const Tape &tape, Ranges ranges, FieldBound &out, double scale,
         auto sides = sides_at(machine, a, b);
         bool known = sides.has_value();
         while (known && sides->b[axis] - sides->a[axis] > 2 * scale) known = halve(machine, *sides);
-        if (!known || !jumps(machine, *sides)) continue;
+        Sides nearer = sides.value_or(Sides{});
+        if (!known || !jumps(machine, nearer)) continue;
         take(*sides);
         out.seen_jump = true;
         for (std::size_t i = 0; i < 3; ++i) out.where[i] = (sides->a[i] + sides->b[i]) / 2;

@@ -12,9 +12,8 @@ namespace fathom::proof {
 using ir::ShapeId;
 using ir::ShapeKind;
 
-constexpr double reach = longest * 1.001; // boxes are rounded outward
-constexpr double useless =
-    1e6; // a bound with which a step is less than single precision tells apart
+constexpr double reach = longest * 1.001;   // boxes are rounded outward
+constexpr double slow = 1e3, useless = 1e6; // bounds: a picture takes long, or never ends
 
 static std::string short_text(double x) { return fmt::format("{:.3g}", x); } // also of 1e-20
 
@@ -54,10 +53,12 @@ void Prover::check_size(ShapeId id, Derived &k) {
                 ", and a bound is at most " + short_text(longest);
     const bool leaf = shape.kind == ShapeKind::Leaf;
     if (wrong.empty() && leaf && k.fact.status == ir::ProofStatus::Proved &&
-        k.fact.lipschitz_sup > useless)
-        if (Diagnostic *d = report(id, Code::SteepField,
-                                   name + " has a bound of " + short_text(k.fact.lipschitz_sup) +
-                                       ": where it is that steep no ray gets on"))
+        k.fact.lipschitz_sup > slow)
+        if (Diagnostic *d = report(
+                id, Code::SteepField,
+                name + " has a bound of " + short_text(k.fact.lipschitz_sup) +
+                    ": where it is that steep " +
+                    (k.fact.lipschitz_sup > useless ? "no ray gets on" : "rays hardly get on")))
             d->note("a step is the field's value divided by the bound")
                 .help("choose a smaller region, fewer turns of a loop or smaller numbers, or march "
                       "by an estimate, `estimate: 2`, which is no proof");
