@@ -258,6 +258,7 @@ class Builder {
     bool foreign_instead(Index at, std::string message, const std::string &replacement);
     bool foreign_loop(Index at);
     bool foreign_head(Index first);
+    bool is_assigned_after(Index name) const;
     bool foreign_body(Index at);
     void foreign_then(Index at);
     bool foreign_lambda(Index at);

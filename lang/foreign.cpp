@@ -169,6 +169,23 @@ std::string Builder::parameters_text(Index open) const {
     return out;
 }
 
+// Is the name that is declared here given another value in the rest of its block?
+bool Builder::is_assigned_after(Index name) const {
+    constexpr std::array changes{Tok::Assign,     Tok::PlusAssign,  Tok::MinusAssign,
+                                 Tok::StarAssign, Tok::SlashAssign, Tok::OtherAssign};
+    const Index open = enclosing(name), partner = tokens_.match[open],
+                end = partner > open ? partner : Index(tokens_.tokens.size());
+    for (Index i = name + 1; i < end; ++i) {
+        if (kind(i) != Tok::Name || text(i) != text(name)) continue;
+        const Tok before = kind(i - 1); // a named argument, another declaration
+        if (before == Tok::Open || before == Tok::Comma || before == Tok::Name) continue;
+        Index at = i + 1;
+        while (kind(at) == Tok::Dot && kind(at + 1) == Tok::Name) at += 2;
+        if (std::ranges::find(changes, kind(at)) != changes.end()) return true;
+    }
+    return false;
+}
+
 // `vec2 x = …`, `const x = …`, `float f(vec3 p) {`, `def f(x):`, `module f() {`.
 bool Builder::foreign_head(Index first) {
     Index name = first;
@@ -212,12 +229,14 @@ bool Builder::foreign_head(Index first) {
         return true;
     }
     if (kind(name + 1) == Tok::Assign) {
-        const std::string let = "let " + declared + (has_type ? ": " + type : "");
-        Diagnostic &d =
-            foreign(span(first, name), has_type ? "a type stands behind its name, after `let`"
-                                                : "a name is bound with `let`");
+        const bool changes = is_assigned_after(name);
+        const std::string let =
+            (changes ? "var " : "let ") + declared + (has_type && !changes ? ": " + type : "");
+        Diagnostic &d = foreign(span(first, name),
+                                changes    ? "a name that is assigned to later is bound with `var`"
+                                : has_type ? "a type stands behind its name, after `let`"
+                                           : "a name is bound with `let`");
         d.help("write " + in_code(let + " = …"), {{span(first, name), let}});
-        if (in_function_) d.note("a name that is assigned to later is bound with `var`");
         return true;
     }
     if (is_one_of(type, type_words) && ends_statement(name + 1)) {
