@@ -393,20 +393,24 @@ namespace {
 
 bool is_proved_as_it_is(Graph &graph, const Claim &claim, Looked &looked, double reach) {
     const bool near = looked.near;
-    const auto along = [&](std::optional<Axes> axes) {
+    bool met_product = false;
+    const auto along_by = [&](const std::optional<Axes> &axes, bool products) {
         bool met_held = false;
         for (const bool inverses : {false, true})
             for (const bool sizes : {false, true}) {
                 if (inverses && !met_held) return false;
                 looked.near = near;
-                Cases attempt(graph, {.sizes = sizes, .inverses = inverses, .reach = reach}, looked,
-                              axes);
+                Cases attempt(graph, {sizes, inverses, products, reach}, looked, axes);
                 const bool holds = attempt.hold(claim);
                 looked.cases += attempt.count();
                 met_held = met_held || attempt.met_held();
+                met_product = met_product || attempt.met_product();
                 if (holds) return true;
             }
         return false;
+    };
+    const auto along = [&](const std::optional<Axes> &axes) {
+        return along_by(axes, false) || (met_product && along_by(axes, true));
     };
     if (along(near_parts(graph, claim))) return true;
     if (const auto axes = axes_of(graph, claim); axes && along(axes)) return true;

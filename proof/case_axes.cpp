@@ -214,7 +214,10 @@ struct Bases {
         if (node.op == Op::Sin || node.op == Op::Cos || node.op == Op::Fract) return 1;
         if (node.op == Op::Add || node.op == Op::Sub) return of(0) + of(1);
         if (node.op == Op::Mul) return of(0) * of(1);
-        if (node.op == Op::MatMul) return of(0) * of(1) * ir::components(node.type);
+        if (node.op == Op::MatMul && ir::is_vector(node.type)) {
+            const bool left = ir::is_matrix(graph[graph.arg(id, 0)].type);
+            return row_sum(graph.arg(id, left ? 0 : 1), left, depth) * of(left ? 1 : 0);
+        }
         if (node.op == Op::Make) {
             double most = 0;
             for (int k = 0; k < int(node.count); ++k) most = std::max(most, of(k));
@@ -224,6 +227,26 @@ struct Bases {
             node.op == Op::Splat)
             return of(0);
         return ir::rounding::infinity;
+    }
+
+    // The most that the sizes of a row's numbers are together, or of a column's.
+    double row_sum(NodeId matrix, bool row, int depth) {
+        const int side = ir::side(graph[matrix].type), given = int(graph[matrix].count);
+        double most = 0;
+        for (int i = 0; i < side; ++i) {
+            double sum = 0;
+            for (int k = 0; k < side; ++k) {
+                const int column = row ? k : i, at = column * side + (row ? i : k);
+                if (graph.is_constant(matrix))
+                    sum += std::fabs(graph.constant_of(matrix).value[std::size_t(at)]);
+                else if (graph[matrix].op == Op::Make)
+                    sum += reach(graph.arg(matrix, given == side ? column : at), depth + 1);
+                else
+                    return ir::rounding::infinity;
+            }
+            most = std::max(most, sum);
+        }
+        return most;
     }
 
     std::optional<Claim> seen_through(const Claim &claim, NodeId vector) {

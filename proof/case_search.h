@@ -55,7 +55,8 @@ class Cases {
     // quotients by what is held as products with an inverse.
     struct Tries {
         bool sizes = false, inverses = false;
-        double reach = 1000; // no coordinate is beyond, of points that a proof has to hold for
+        bool products = false; // with matrices of numbers, as sums; else their components are atoms
+        double reach = 1000;   // no coordinate is beyond, of points that a proof has to hold for
     };
     Cases(Graph &graph, Tries tries, Looked &looked, std::optional<Axes> axes = {})
         : graph_(graph), tries_(tries), split_sizes_(tries.sizes), by_inverses_(tries.inverses),
@@ -65,7 +66,8 @@ class Cases {
     // By what the sides are to each other alone (relation); no number is compared.
     bool hold_alike(const Claim &claim);
     int count() const { return count_; }
-    bool met_held() const { return met_held_; } // a number that is the same for all points
+    bool met_held() const { return met_held_; }       // a number that is the same for all points
+    bool met_product() const { return met_product_; } // of a vector and a matrix of numbers
 
   private:
     Graph &graph_;
@@ -86,7 +88,7 @@ class Cases {
     std::map<NodeId, Relation> relations_;
     int count_ = 0, depth_ = 0, squares_ = 0, roots_ = 0, lines_ = 0;
     bool alike_ = false; // as of hold_alike
-    bool met_held_ = false;
+    bool met_held_ = false, met_product_ = false;
     bool splits_ = true; // else what a case leaves open is asked of its inequalities
 
     bool hold(const Case &given, int depth);
@@ -216,6 +218,7 @@ class Cases {
     std::optional<Sum> component(NodeId id, int i, Op op, const Sum &a, const Sum &b, const Sum &c);
 
     std::optional<Sum> cross(NodeId id, int i);
+    std::optional<Sum> turned(NodeId id, int i);
 
     std::optional<bool> truth(NodeId id);
 };

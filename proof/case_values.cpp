@@ -396,6 +396,7 @@ std::optional<Sum> Cases::value_of(NodeId id, int i) {
     }
     if (node.op == Op::Sqrt) return root(id, graph_.arg(id, 0), i);
     if (node.op == Op::Cross) return cross(id, i);
+    if (node.op == Op::MatMul && ir::is_vector(node.type)) return turned(id, i);
     if (node.op == Op::Select) {
         const auto t = truth(graph_.arg(id, 0));
         if (!t) return {};
@@ -445,6 +446,34 @@ std::optional<Sum> Cases::component(NodeId id, int i, Op op, const Sum &a, const
     const Sum less = add({}, a, -1);
     const auto w = way(id, i, {{a}, {less}, {a, less}});
     return w ? std::optional(constant(*w == 0 ? 1 : *w == 1 ? -1 : 0)) : std::nullopt;
+}
+
+// The product of a vector and a matrix of numbers; any other is a function of which nothing is known.
+std::optional<Sum> Cases::turned(NodeId id, int i) {
+    const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
+    const bool left = ir::is_matrix(graph_[a].type);
+    const NodeId matrix = left ? a : b, vector = left ? b : a;
+    const int side = ir::side(graph_[matrix].type), given = int(graph_[matrix].count);
+    const auto entry = [&](int column, int row) -> std::optional<double> {
+        const auto at = [](int k) { return static_cast<std::size_t>(k); };
+        if (graph_.is_constant(matrix))
+            return graph_.constant_of(matrix).value[at(column * side + row)];
+        if (graph_[matrix].op != Op::Make) return {};
+        const NodeId part = graph_.arg(matrix, given == side ? column : column * side + row);
+        if (!graph_.is_constant(part)) return {};
+        return graph_.constant_of(part).value[at(given == side ? row : 0)];
+    };
+    Sum sum;
+    for (int k = 0; k < side; ++k) {
+        const auto m = left ? entry(k, i) : entry(i, k);
+        if (!m || !std::isfinite(*m)) return unknown(id, i);
+        met_product_ = true;
+        if (!tries_.products) return unknown(id, i);
+        const auto x = value(vector, k);
+        if (!x) return {};
+        sum = add(sum, *x, *m);
+    }
+    return sum;
 }
 
 std::optional<Sum> Cases::cross(NodeId id, int i) {

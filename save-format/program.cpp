@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace fathom::save {
 namespace {
@@ -38,7 +39,8 @@ constexpr std::size_t max_inline = 20000; // characters of an expression without
 constexpr std::string_view constructors[] = {"vec2", "vec3", "vec4", "mat2", "mat3", "mat4"};
 
 std::string constant_text(const Value &value) {
-    if (const auto number = number_of(value))
+    // no length of a shape's, but any single: what a search for the nearest begins with
+    if (const auto number = number_of(value, double(std::numeric_limits<float>::max())))
         return *number < 0 ? "(" + sdf_number(*number) + ")" : sdf_number(*number);
     if (value.kind == Value::Kind::Scalar && value.plain) {
         if (const auto on = switch_of(value)) return *on ? "true" : "false";

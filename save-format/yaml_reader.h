@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
+#include "base/single.h"
 
 #include <memory>
 #include <string>
@@ -147,7 +148,7 @@ ParsedText parse_text(std::string_view text);
 std::string spelling_key(std::string_view name); // lower case, without spaces, `-` and `_`
 
 // A scalar as a number or as a switch, in any spelling that is read; nothing where it is neither.
-std::optional<double> number_of(const Value &value);
+std::optional<double> number_of(const Value &value, double most = longest);
 std::optional<bool> switch_of(const Value &value);
 bool is_none(std::string_view word); // "<None>", "", "~"
 

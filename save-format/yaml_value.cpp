@@ -215,7 +215,7 @@ ParsedText parse_text(std::string_view text) {
     return parsed;
 }
 
-std::optional<double> number_of(const Value &value) {
+std::optional<double> number_of(const Value &value, double most) {
     if (value.kind != Value::Kind::Scalar || !value.plain || value.text.empty())
         return std::nullopt;
     std::string_view text = value.text;
@@ -229,7 +229,7 @@ std::optional<double> number_of(const Value &value) {
         return std::nullopt;
     auto number = parse_number(text[0] == '.' ? "0" + std::string(text) : std::string(text));
     if (!number && text.back() == '.') number = parse_number(text.substr(0, text.size() - 1));
-    if (!number || std::abs(*number) > longest) return std::nullopt;
+    if (!number || std::abs(*number) > most) return std::nullopt;
     return flushed(negative ? -*number : *number);
 }
 
