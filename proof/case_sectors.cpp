@@ -1,5 +1,6 @@
-// Points that a fold turns into a sector about an axis, in a proof by cases: the sector's two borders
-// are inequalities between their coordinates (docs/lipschitz.md, 2.1, Sectors).
+// Products of vectors and matrices in a proof by cases. Points that a fold turns into a sector about an
+// axis: the sector's two borders are inequalities between their coordinates (docs/lipschitz.md, 2.1,
+// Sectors).
 #include "proof/case_search.h"
 #include "proof/continuity.h"
 #include "proof/forms.h"
@@ -104,6 +105,44 @@ void Cases::add_sectors(std::vector<Inequality> &rows, const Case &c) const {
                 at_least_0(std::sin(most), -std::cos(most)); // r sin(most - |angle|)
             }
         }
+}
+
+// The product of a vector and a matrix of numbers; any other is a function of which nothing is known.
+std::optional<Sum> Cases::turned(NodeId id, int i) {
+    const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
+    const bool left = ir::is_matrix(graph_[a].type);
+    const NodeId matrix = left ? a : b, vector = left ? b : a;
+    const int side = ir::side(graph_[matrix].type), given = int(graph_[matrix].count);
+    const auto entry = [&](int column, int row) -> std::optional<double> {
+        const auto at = [](int k) { return static_cast<std::size_t>(k); };
+        if (graph_.is_constant(matrix))
+            return graph_.constant_of(matrix).value[at(column * side + row)];
+        if (graph_[matrix].op != Op::Make) return {};
+        const NodeId part = graph_.arg(matrix, given == side ? column : column * side + row);
+        if (!graph_.is_constant(part)) return {};
+        return graph_.constant_of(part).value[at(given == side ? row : 0)];
+    };
+    Sum sum;
+    for (int k = 0; k < side; ++k) {
+        const auto m = left ? entry(k, i) : entry(i, k);
+        if (!m || !std::isfinite(*m)) return unknown(id, i);
+        met_product_ = true;
+        if (!tries_.products) return unknown(id, i);
+        const auto x = value(vector, k);
+        if (!x) return {};
+        sum = add(sum, *x, *m);
+    }
+    return sum;
+}
+
+std::optional<Sum> Cases::cross(NodeId id, int i) {
+    const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const auto aj = value(a, j), ak = value(a, k), bj = value(b, j), bk = value(b, k);
+    if (!aj || !ak || !bj || !bk) return {};
+    const auto x = times(*aj, *bk), y = times(*ak, *bj);
+    if (!x || !y) return {};
+    return add(*x, *y, -1);
 }
 
 } // namespace fathom::proof

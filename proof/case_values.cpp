@@ -448,44 +448,6 @@ std::optional<Sum> Cases::component(NodeId id, int i, Op op, const Sum &a, const
     return w ? std::optional(constant(*w == 0 ? 1 : *w == 1 ? -1 : 0)) : std::nullopt;
 }
 
-// The product of a vector and a matrix of numbers; any other is a function of which nothing is known.
-std::optional<Sum> Cases::turned(NodeId id, int i) {
-    const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
-    const bool left = ir::is_matrix(graph_[a].type);
-    const NodeId matrix = left ? a : b, vector = left ? b : a;
-    const int side = ir::side(graph_[matrix].type), given = int(graph_[matrix].count);
-    const auto entry = [&](int column, int row) -> std::optional<double> {
-        const auto at = [](int k) { return static_cast<std::size_t>(k); };
-        if (graph_.is_constant(matrix))
-            return graph_.constant_of(matrix).value[at(column * side + row)];
-        if (graph_[matrix].op != Op::Make) return {};
-        const NodeId part = graph_.arg(matrix, given == side ? column : column * side + row);
-        if (!graph_.is_constant(part)) return {};
-        return graph_.constant_of(part).value[at(given == side ? row : 0)];
-    };
-    Sum sum;
-    for (int k = 0; k < side; ++k) {
-        const auto m = left ? entry(k, i) : entry(i, k);
-        if (!m || !std::isfinite(*m)) return unknown(id, i);
-        met_product_ = true;
-        if (!tries_.products) return unknown(id, i);
-        const auto x = value(vector, k);
-        if (!x) return {};
-        sum = add(sum, *x, *m);
-    }
-    return sum;
-}
-
-std::optional<Sum> Cases::cross(NodeId id, int i) {
-    const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const auto aj = value(a, j), ak = value(a, k), bj = value(b, j), bk = value(b, k);
-    if (!aj || !ak || !bj || !bk) return {};
-    const auto x = times(*aj, *bk), y = times(*ak, *bj);
-    if (!x || !y) return {};
-    return add(*x, *y, -1);
-}
-
 std::optional<bool> Cases::truth(NodeId id) {
     if (const auto it = truths_.find(id); it != truths_.end()) return it->second;
     const auto out = truth_of(id);
