@@ -300,14 +300,22 @@ std::optional<NodeId> corner(Graph &graph, NodeId id) {
     if (graph[id].op != Op::Add || graph[id].type != ir::Type::Float) return {};
     for (int i = 0; i < 2; ++i) {
         const NodeId length = graph.arg(id, i), inside = graph.arg(id, 1 - i);
-        if (graph[length].op != Op::Length || graph[inside].op != Op::Min) continue;
-        const auto v = above_zero(graph, Op::Max, graph.arg(length, 0)),
-                   most = above_zero(graph, Op::Min, inside);
+        const Op op = graph[inside].op;
+        if (graph[length].op != Op::Length || (op != Op::Min && op != Op::Max)) continue;
+        const auto v = above_zero(graph, Op::Max, graph.arg(length, 0));
+        const auto most = op == Op::Max ? inside : above_zero(graph, Op::Min, inside);
         if (!v || !most) continue;
         std::vector<NodeId> found, wanted;
         greatest_of(graph, *most, found);
+        NodeId of = *v; // or min(v, 0), of which hg_sdf takes the greatest component
+        if (op == Op::Max && graph[found.front()].op == Op::Swizzle) {
+            of = graph.arg(found.front(), 0);
+            if (above_zero(graph, Op::Min, of) != v) continue;
+        } else if (op == Op::Max) {
+            continue;
+        }
         for (int c = 0; c < ir::components(graph[*v].type); ++c)
-            wanted.push_back(graph.component(*v, c));
+            wanted.push_back(graph.component(of, c));
         std::sort(found.begin(), found.end());
         std::sort(wanted.begin(), wanted.end());
         if (found == wanted) return v;
