@@ -47,7 +47,6 @@ struct Canonical {
 
     NodeId scalar(NodeId id);
     NodeId under(NodeId id);
-    std::optional<NodeId> entry(NodeId matrix, int row, int column);
     std::optional<NodeId> written_product(NodeId a, NodeId b);
     std::optional<NodeId> turned(Op op, NodeId angle);
 

@@ -2,6 +2,7 @@
 // there (case_search.h).
 #include "ir/passes/walk.h"
 #include "proof/case_search.h"
+#include "proof/continuity.h"
 #include "proof/tape.h"
 
 #include <algorithm>
@@ -231,18 +232,13 @@ struct Bases {
 
     // The most that the sizes of a row's numbers are together, or of a column's.
     double row_sum(NodeId matrix, bool row, int depth) {
-        const int side = ir::side(graph[matrix].type), given = int(graph[matrix].count);
+        const int side = ir::side(graph[matrix].type);
         double most = 0;
         for (int i = 0; i < side; ++i) {
             double sum = 0;
             for (int k = 0; k < side; ++k) {
-                const int column = row ? k : i, at = column * side + (row ? i : k);
-                if (graph.is_constant(matrix))
-                    sum += std::fabs(graph.constant_of(matrix).value[std::size_t(at)]);
-                else if (graph[matrix].op == Op::Make)
-                    sum += reach(graph.arg(matrix, given == side ? column : at), depth + 1);
-                else
-                    return ir::rounding::infinity;
+                const auto entry = entry_of(graph, matrix, row ? i : k, row ? k : i);
+                sum += entry ? reach(*entry, depth + 1) : ir::rounding::infinity;
             }
             most = std::max(most, sum);
         }

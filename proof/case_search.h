@@ -5,6 +5,7 @@
 #include "proof/border_cases.h"
 #include "proof/cases.h"
 #include "proof/on_line.h"
+#include "proof/tape.h"
 
 #include <array>
 #include <map>
@@ -56,7 +57,8 @@ class Cases {
     struct Tries {
         bool sizes = false, inverses = false;
         bool products = false; // with matrices of numbers, as sums; else their components are atoms
-        double reach = 1000;   // no coordinate is beyond, of points that a proof has to hold for
+        double reach =
+            near_enough; // no coordinate is beyond, of points that a proof has to hold for
     };
     Cases(Graph &graph, Tries tries, Looked &looked, std::optional<Axes> axes = {})
         : graph_(graph), tries_(tries), split_sizes_(tries.sizes), by_inverses_(tries.inverses),

@@ -112,19 +112,10 @@ std::optional<Sum> Cases::turned(NodeId id, int i) {
     const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
     const bool left = ir::is_matrix(graph_[a].type);
     const NodeId matrix = left ? a : b, vector = left ? b : a;
-    const int side = ir::side(graph_[matrix].type), given = int(graph_[matrix].count);
-    const auto entry = [&](int column, int row) -> std::optional<double> {
-        const auto at = [](int k) { return static_cast<std::size_t>(k); };
-        if (graph_.is_constant(matrix))
-            return graph_.constant_of(matrix).value[at(column * side + row)];
-        if (graph_[matrix].op != Op::Make) return {};
-        const NodeId part = graph_.arg(matrix, given == side ? column : column * side + row);
-        if (!graph_.is_constant(part)) return {};
-        return graph_.constant_of(part).value[at(given == side ? row : 0)];
-    };
     Sum sum;
-    for (int k = 0; k < side; ++k) {
-        const auto m = left ? entry(k, i) : entry(i, k);
+    for (int k = 0; k < ir::side(graph_[matrix].type); ++k) {
+        const auto entry = left ? entry_of(graph_, matrix, i, k) : entry_of(graph_, matrix, k, i);
+        const auto m = entry ? graph_.as_number(*entry) : std::nullopt;
         if (!m || !std::isfinite(*m)) return unknown(id, i);
         met_product_ = true;
         if (!tries_.products) return unknown(id, i);

@@ -1,6 +1,7 @@
 // What nodes are in a case: sums of products, by component. A choice that is met has gone one way in
 // the case, or splits it.
 #include "proof/case_search.h"
+#include "proof/continuity.h"
 #include "proof/exact.h"
 #include "proof/machine.h"
 #include "proof/tape.h"
@@ -80,8 +81,6 @@ std::optional<Sum> Cases::unknown(NodeId id, int i) {
     }
     Atom about;
     about.never_negative = node.op == Op::Exp || node.op == Op::Exp2 || node.op == Op::Hash;
-    constexpr ir::OpSet may_be_large{Op::Exp,  Op::Exp2, Op::Pow, Op::Div,
-                                     Op::Sinh, Op::Cosh, Op::Tan};
     about.may_be_large = may_be_large[node.op];
     if (const auto angle = node.op == Op::MatMul ? sector_of(id) : std::nullopt) {
         AtomKey point = key;

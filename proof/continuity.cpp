@@ -26,8 +26,6 @@ constexpr double rounding = 1e-12;
 // where its factor is small, as 1e-13 exp(30 + z), counts beside its own two terms.
 bool is_rounding(const Graph &graph, const Polynomial &rest, const Polynomial &p,
                  const Polynomial &q) {
-    constexpr ir::OpSet may_be_large{Op::Exp,  Op::Exp2, Op::Pow, Op::Div,
-                                     Op::Sinh, Op::Cosh, Op::Tan};
     constexpr std::size_t most_factors = 4;
     double size = 0;
     for (const auto &[m, c] : p) size = std::max(size, std::fabs(c));
@@ -327,6 +325,17 @@ NodeId component_of(Graph &graph, NodeId vector, int i) {
     int left =
         1000; // vectors that are written so: one may stand in both parts of another, again and again
     return component_within(graph, vector, i, left);
+}
+
+std::optional<NodeId> entry_of(Graph &graph, NodeId matrix, int row, int column) {
+    const ir::Node node = graph[matrix];
+    const int side = ir::side(node.type), at = column * side + row;
+    if (graph.is_constant(matrix))
+        return graph.number(graph.constant_of(matrix).value[static_cast<std::size_t>(at)]);
+    if (node.op != Op::Make) return {};
+    if (int(node.count) == side * side) return graph.arg(matrix, at);
+    if (int(node.count) == side) return component_of(graph, graph.arg(matrix, column), row);
+    return {};
 }
 
 NodeId in_one_form(Graph &graph, NodeId scalar, Work *work) {

@@ -91,17 +91,26 @@ constexpr double ways_gain = 0.98; // what a bound by ways is at most, of the on
 
 constexpr int first_ways = 3, more_ways = 3; // depths; halving often does as well, for less
 
+bool any_instruction(const Tape &tape, const auto &may) {
+    return std::ranges::any_of(tape.each, may) || std::ranges::any_of(tape.loops, [&](auto &loop) {
+               return std::ranges::any_of(loop.body, may);
+           });
+}
+
 // Is there a choice that may be open in a cell?
 bool holds_choices(const Tape &tape) {
     constexpr ir::OpSet choices{Op::Min,    Op::Max,   Op::Clamp, Op::Abs,   Op::Union,
                                 Op::Select, Op::Sign,  Op::Step,  Op::Floor, Op::Round,
                                 Op::Ceil,   Op::Trunc, Op::Fract, Op::Mod,   Op::Intersection};
-    const auto one = [&](const Instruction &in) {
+    return any_instruction(tape, [&](const Instruction &in) {
         return choices[in.op] || in.form == Form::Wave || in.form == Form::HeldWave;
-    };
-    return std::ranges::any_of(tape.each, one) || std::ranges::any_of(tape.loops, [&](auto &loop) {
-               return std::ranges::any_of(loop.body, one);
-           });
+    });
+}
+
+// Else no point turns by an angle that varies (winding.h).
+bool holds_waves(const Tape &tape) {
+    return any_instruction(
+        tape, [](const Instruction &in) { return in.op == Op::Sin || in.op == Op::Cos; });
 }
 
 // Along each axis that the domain is longer than a period, one period; says along which.
@@ -326,16 +335,18 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
     question.add(budget);
     return std::move(question).answer([&](Flattening &own, const Ranges &all, NodeId copy) {
         const Tape tape = flatten(own, copy);
+        if (budget.most == 0 || !holds_waves(tape))
+            return search_bound(own, all, tape, domain, budget);
         Budget first = budget;
         first.most = 0;
         FieldBound out = search_bound(own, all, tape, domain, first);
         const auto is_loose = [&] {
             return std::isfinite(out.lipschitz) && out.lipschitz > loose * out.sampled &&
-                   out.lipschitz > budget.enough && budget.most > 0;
+                   out.lipschitz > budget.enough;
         };
         // Of an angle that moves nothing is known, so that all slopes seen are those of any angle.
         const ir::Graph::Reads reads = own.graph.reads(copy);
-        const bool moves = (reads.time || reads.params) && budget.most > 0;
+        const bool moves = reads.time || reads.params;
         if (is_loose() || (moves && std::isfinite(out.lipschitz)))
             if (const auto less = unwound_bound(own, all, copy, domain, budget))
                 out.lipschitz = std::min(out.lipschitz, *less);

@@ -196,18 +196,6 @@ NodeId Canonical::under(NodeId id) {
     return border && border->by_angle ? with_round_numbers(graph, id) : id;
 }
 
-// The entry of a matrix that is a constant, or made of scalars or of columns.
-std::optional<NodeId> Canonical::entry(NodeId matrix, int row, int column) {
-    const ir::Node node = graph[matrix];
-    const int side = node.type == ir::Type::Mat2 ? 2 : node.type == ir::Type::Mat3 ? 3 : 4;
-    const int at = column * side + row;
-    if (graph.is_constant(matrix))
-        return graph.number(graph.constant_of(matrix).value[static_cast<std::size_t>(at)]);
-    if (node.op != Op::Make) return {};
-    if (int(node.count) == side * side) return graph.arg(matrix, at);
-    if (int(node.count) == side) return component_of(graph, graph.arg(matrix, column), row);
-    return {};
-}
 std::optional<NodeId> Canonical::written_product(NodeId a, NodeId b) {
     const bool first = ir::is_matrix(graph[a].type);
     const NodeId matrix = first ? a : b, vector = first ? b : a;
@@ -216,7 +204,8 @@ std::optional<NodeId> Canonical::written_product(NodeId a, NodeId b) {
     for (int i = 0; i < n; ++i) {
         NodeId sum = graph.number(0);
         for (int k = 0; k < n; ++k) {
-            const auto factor = first ? entry(matrix, i, k) : entry(matrix, k, i);
+            const auto factor =
+                first ? entry_of(graph, matrix, i, k) : entry_of(graph, matrix, k, i);
             if (!factor) return {};
             sum = graph.add(sum, graph.mul(*factor, component_of(graph, vector, k)));
         }

@@ -29,16 +29,11 @@ NodeId part_of(Graph &graph, NodeId vector, int i) {
     const NodeId a = graph.arg(vector, 0), b = graph.arg(vector, 1);
     const bool left = ir::is_matrix(graph[a].type);
     const NodeId matrix = left ? a : b, of = left ? b : a;
-    const int side = ir::components(graph[vector].type);
-    const auto args = std::vector<NodeId>(graph.args(matrix).begin(), graph.args(matrix).end());
-    if (graph[matrix].op != Op::Make) return component_of(graph, vector, i);
     NodeId sum = graph.number(0);
-    for (int k = 0; k < side; ++k) {
-        const int column = left ? k : i, row = left ? i : k;
-        const bool by_columns = int(args.size()) == side;
-        const NodeId m = by_columns ? component_of(graph, args[std::size_t(column)], row)
-                                    : args[std::size_t(column * side + row)];
-        sum = graph.add(sum, graph.mul(m, part_of(graph, of, k)));
+    for (int k = 0; k < ir::components(graph[vector].type); ++k) {
+        const auto m = left ? entry_of(graph, matrix, i, k) : entry_of(graph, matrix, k, i);
+        if (!m) return component_of(graph, vector, i);
+        sum = graph.add(sum, graph.mul(*m, part_of(graph, of, k)));
     }
     return sum;
 }
