@@ -23,6 +23,9 @@ inline bool zero(const Row &row) {
     return row[0] == Interval(0.0) && row[1] == Interval(0.0) && row[2] == Interval(0.0);
 }
 
+// Where they have one their value is no number, or no finite one.
+constexpr ir::OpSet poles{Op::Div, Op::InverseSqrt, Op::Log, Op::Log2, Op::Tan};
+
 // Whether a, b or both may be the greater.
 struct Choice {
     bool first, second;
@@ -42,7 +45,8 @@ struct Step {
     Step(Machine &of, const Instruction &instruction);
     void run();
     bool overflows() const;
-    double bend() const;   // machine_bend.cpp
+    double bend() const; // machine_bend.cpp
+    bool stands_still() const;
     void look_back(int c); // ways.cpp
 
     // -- inputs (machine_inputs.cpp)
@@ -114,6 +118,7 @@ struct Step {
     void splat();
     void make();
     void swizzle();
+    int repeats_of_swizzle() const;
     void column();
     void transpose();
     void length();
@@ -199,14 +204,18 @@ struct Step {
     // f by component with the derivative's interval; norm(diag(D) J) <= max |D| * norm(J).
     template <class F, class D> void unary(F f, D derivative) {
         double most = 0;
+        bool at_pole = false; // as log(k) at k = 0, whether that varies or not
         for (int c = 0; c < n; ++c) {
-            Interval x = value(0, c);
+            const Interval x = value(0, c), y = f(x);
             Interval d = zero(grad(0, c)) ? Interval(0.0) : derivative(x);
             most = std::max(most, d.magnitude());
-            set(c, f(x), scaled(d, grad(0, c)));
+            at_pole = at_pole || (poles[in.op] && x.finite() && !y.finite());
+            set(c, y, scaled(d, grad(0, c)));
         }
+        if (at_pole) return fail(Trouble::Singular);
         finish(ir::rounding::times(most, norm(0)), any_odd);
     }
+    bool has_pole(int arg) const { return machine.pole_[in.args[std::size_t(arg)]] != 0; }
     bool may_jump(int arg) const { // of itself, so that it need not pass a choice's border
         return norm(arg) == ir::rounding::infinity || any_odd;
     }

@@ -145,7 +145,7 @@ Machine::Machine(const Tape &tape, const Ranges &ranges, bool bends)
     : tape_(tape), ranges_(ranges), value_(tape.components), grad_(tape.components),
       odd_(tape.components), norm_(tape.first.size()), relative_(tape.first.size(), infinity),
       bend_(bends ? tape.first.size() : 0), trouble_(tape.first.size(), Trouble::None),
-      cause_(tape.first.size()) {
+      cause_(tape.first.size()), pole_(tape.first.size()) {
     in_reach_ = tape.grows;
     made_by_.assign(tape_.first.size(), -1);
     for (std::size_t i = 0; i < tape_.each.size(); ++i)
@@ -219,6 +219,7 @@ void Machine::copy(Slot from, Slot to) {
     if (!bend_.empty()) bend_[to] = bend_[from];
     trouble_[to] = trouble_[from];
     cause_[to] = cause_[from];
+    pole_[to] = pole_[from];
 }
 
 // `into` becomes what holds both; a jump from one to the other may lie in the cell.
@@ -234,6 +235,7 @@ void Machine::join(Slot into, Slot other, bool jump, NodeId cause) {
         norm_[into] = norm_[other];
         trouble_[into] = trouble_[other];
         cause_[into] = cause_[other];
+        pole_[into] = pole_[other];
     }
     relative_[into] = jump ? infinity : std::max(relative_[into], relative_[other]);
     if (!bend_.empty()) bend_[into] = jump ? infinity : std::max(bend_[into], bend_[other]);
@@ -296,10 +298,12 @@ void Machine::fail(const Instruction &instruction, Trouble why) {
     relative_[s] = infinity;
     trouble_[s] = why;
     cause_[s] = instruction.node;
+    pole_[s] = why == Trouble::Singular && poles[instruction.op];
     for (Slot a : instruction.args) // what fed it was in trouble before
         if (trouble_[a] != Trouble::None) {
             trouble_[s] = trouble_[a];
             cause_[s] = cause_[a];
+            pole_[s] = pole_[s] || pole_[a];
             return;
         }
     if (why == Trouble::Jump)
@@ -336,6 +340,7 @@ void Machine::finish(const Instruction &instruction, double rule, bool odd_used)
         norm_[s] = std::min(norm_[s], up(times(relative_[s], value_[at].hi), 4));
     trouble_[s] = Trouble::None;
     cause_[s] = NodeId();
+    pole_[s] = 0;
     if (norm_[s] == infinity) fail(instruction, Trouble::Singular);
 }
 

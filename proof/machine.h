@@ -177,6 +177,7 @@ class Machine {
     std::vector<double> bend_;      // by slot, or none
     std::vector<Trouble> trouble_;
     std::vector<NodeId> cause_;
+    std::vector<std::uint8_t> pole_; // by slot: singular as it may be no number at all
     double result_norm_ = 0;
     std::size_t work_ = 0;
     Ways *ways_ = nullptr;              // in a run by ways

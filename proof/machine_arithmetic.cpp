@@ -40,11 +40,13 @@ void Step::add() {
 
 void Step::product() {
     double a = 0, b = 0;
+    const bool none_times = has_pole(0) || has_pole(1);
     for (int c = 0; c < n; ++c) {
         Interval x = value(0, c), y = value(1, c);
         a = std::max(a, x.magnitude()), b = std::max(b, y.magnitude());
         set(c, x * y, sum(scaled(y, grad(0, c)), scaled(x, grad(1, c))), odd(0, c) || odd(1, c));
     }
+    if (none_times) return fail(Trouble::Singular); // 0 times what is no number is none
     finish(up(times(b, norm(0)) + times(a, norm(1))), false);
     if (machine.norm_[out] != infinity)
         machine.cause_[out] =

@@ -8,10 +8,14 @@
 //   a * b         max|a| bb + max|b| ba + 2 na nb, by component: |u o v| <= |u| |v|
 //   f(a)          max|f'| ba + max|f''| na^2
 //   |a|           ba + na^2 / min|a|
+//   a.xx          sqrt 2 ba, as one component stands there twice
 //   M a, M fixed  |M|_F ba
 //   noise of q    c bq + c2 nq^2, with the certified slope c and bend c2 of ir/noise.h
 #include "ir/noise.h"
 #include "proof/instruction_rules.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace fathom::proof {
 
@@ -29,6 +33,7 @@ enum class Bend : std::uint8_t {
     Unknown,
     None,
     Part,
+    Swizzle,
     Splat,
     Sum,
     Product,
@@ -42,21 +47,29 @@ enum class Bend : std::uint8_t {
     ValueNoise,
 };
 constexpr ir::OpTable<Bend> bend_of_op{
-    {Op::Point, Bend::None},    {Op::Neg, Bend::Part},
-    {Op::Swizzle, Bend::Part},  {Op::Splat, Bend::Splat},
-    {Op::Add, Bend::Sum},       {Op::Sub, Bend::Sum},
-    {Op::Mul, Bend::Product},   {Op::Div, Bend::Quotient},
-    {Op::Make, Bend::Vector},   {Op::Dot, Bend::Dot},
-    {Op::MatMul, Bend::Matrix}, {Op::Length, Bend::Length},
-    {Op::Sin, Bend::Wave},      {Op::Cos, Bend::Wave},
-    {Op::Perlin, Bend::Perlin}, {Op::ValueNoise, Bend::ValueNoise},
+    {Op::Point, Bend::None},      {Op::Neg, Bend::Part},
+    {Op::Swizzle, Bend::Swizzle}, {Op::Splat, Bend::Splat},
+    {Op::Add, Bend::Sum},         {Op::Sub, Bend::Sum},
+    {Op::Mul, Bend::Product},     {Op::Div, Bend::Quotient},
+    {Op::Make, Bend::Vector},     {Op::Dot, Bend::Dot},
+    {Op::MatMul, Bend::Matrix},   {Op::Length, Bend::Length},
+    {Op::Sin, Bend::Wave},        {Op::Cos, Bend::Wave},
+    {Op::Perlin, Bend::Perlin},   {Op::ValueNoise, Bend::ValueNoise},
 };
 
 } // namespace
 
+// Of what has no slope: is it the same at all points of the cell? Else it steps from one value to
+// another, where the jump is not seen by the field: as `x sign(x)`, which has a ridge there.
+bool Step::stands_still() const {
+    if (is_one_value()) return true;
+    return std::ranges::all_of(in.args,
+                               [&](Slot s) { return fixed(machine.norm_[s], machine.bend_[s]); });
+}
+
 double Step::bend() const {
     if (machine.norm_[out] == infinity) return infinity;
-    if (machine.norm_[out] == 0) return 0; // the same at all points of a convex cell
+    if (machine.norm_[out] == 0) return stands_still() ? 0 : infinity;
     const auto bend_of = [&](int arg) {
         return machine.bend_[in.args[static_cast<std::size_t>(arg)]];
     };
@@ -98,6 +111,7 @@ double Step::bend() const {
     switch (bend_of_op[in.op]) {
     case Bend::None: return 0;
     case Bend::Part: return bend_of(0);
+    case Bend::Swizzle: return above(std::sqrt(double(repeats_of_swizzle())) * bend_of(0));
     case Bend::Splat: return above(std::sqrt(double(n)) * bend_of(0));
     case Bend::Sum: return above(bend_of(0) + bend_of(1));
     case Bend::Product: return product(most(0), most(1));

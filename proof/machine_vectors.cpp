@@ -42,14 +42,19 @@ void Step::make() {
     if (machine.norm_[out] != infinity) machine.cause_[out] = wave;
 }
 
+// How often the component that it takes most stands in it.
+int Step::repeats_of_swizzle() const {
+    std::array<int, 4> used{};
+    for (int c = 0; c < n; ++c) ++used[std::size_t(ir::swizzle_component(in.payload, c))];
+    return *std::ranges::max_element(used);
+}
+
 void Step::swizzle() {
-    int used[4] = {0, 0, 0, 0};
     for (int c = 0; c < n; ++c) {
         int k = ir::swizzle_component(in.payload, c);
-        ++used[k];
         set(c, value(0, k), grad(0, k), odd(0, k));
     }
-    int repeats = std::max({used[0], used[1], used[2], used[3]});
+    const int repeats = repeats_of_swizzle();
     finish(repeats == 1 ? norm(0) : up(times(std::sqrt(double(repeats)), norm(0)), 4), false);
     if (machine.norm_[out] != infinity) machine.cause_[out] = machine.cause_[in.args[0]];
 }

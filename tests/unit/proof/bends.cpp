@@ -128,6 +128,25 @@ TEST_CASE("what is straight does not bend, what has kinks has no bound") {
 }
 
 // M = b + 1/(c - a - D) with the least D >= L^2/(2M).
+// Steps that the field does not see have no slope, and there it has a ridge.
+TEST_CASE("what steps unseen bends as sharply as it may") {
+    Scenery s;
+    const NodeId ridge = s.g.mul(s.x, s.call(Op::Sign, s.x)), flat = s.g.add(ridge, s.y);
+    CHECK(bend(s, ridge, -0.5, 0.5).proved == ir::rounding::infinity);
+    CHECK(bend(s, flat, -0.5, 0.5).proved == ir::rounding::infinity);
+    CHECK(bend(s, flat, 0.2, 0.8).proved == 0);
+}
+
+TEST_CASE("a component that stands in a vector twice bends twice") {
+    Scenery s;
+    const NodeId waves = s.sin(s.g.mul(s.p, s.n(6)));
+    const std::array<int, 3> xxx{0, 0, 0};
+    const NodeId sum = s.g.make(Op::Dot, {s.g.swizzle(waves, xxx), s.g.vec3(1, 1, 1)});
+    const Bend b = bend(s, sum, -0.4, 0.4);
+    CHECK(b.seen > 100); // 3 * 36
+    CHECK(b.seen <= b.proved);
+}
+
 TEST_CASE("a displaced sphere's second derivative") {
     Scenery s;
     const NodeId waves = s.g.mul(s.n(0.1), s.sin(s.g.mul(s.x, s.n(10))));
