@@ -3,6 +3,7 @@
 #include "ir/passes/walk.h"
 #include "proof/case_search.h"
 #include "proof/continuity.h"
+#include "proof/read_through.h"
 #include "proof/tape.h"
 
 #include <algorithm>
@@ -140,64 +141,9 @@ std::optional<Axes> axes_of(const Graph &graph, const Claim &claim) {
 namespace {
 
 constexpr std::size_t max_nodes_of_claim = 400;
-constexpr ir::OpSet affine{Op::Add,  Op::Sub,     Op::Neg,   Op::Mul,   Op::Div,
-                           Op::Make, Op::Swizzle, Op::Splat, Op::MatMul},
-    folds{Op::Abs, Op::Mod, Op::Fract, Op::Floor, Op::Round, Op::Clamp};
-
-struct Below {
-    unsigned coordinates = 0; // that are read, a bit each
-    bool is_affine = true, is_fold = true;
-};
-
 struct Bases {
     Graph &graph;
-    std::map<NodeId, Below> known{};
-
-    const Below &below(NodeId id) {
-        if (const auto it = known.find(id); it != known.end()) return it->second;
-        Below out;
-        const ir::Node node = graph[id];
-        if (node.op == Op::Point) {
-            out.coordinates = (1u << ir::components(node.type)) - 1;
-        } else if (node.op == Op::Swizzle && graph[graph.arg(id, 0)].op == Op::Point) {
-            for (int i = 0; i < ir::components(node.type); ++i)
-                out.coordinates |= 1u << ir::swizzle_component(node.payload, i);
-        } else if (graph.reads(id).point) {
-            out.is_fold = affine[node.op] || folds[node.op];
-            out.is_affine = affine[node.op];
-            int moving = 0; // arguments that read the point
-            for (NodeId arg : graph.args(id)) {
-                const Below one = below(arg);
-                out.coordinates |= one.coordinates;
-                out.is_affine = out.is_affine && one.is_affine;
-                out.is_fold = out.is_fold && one.is_fold;
-                moving += graph.reads(arg).point;
-            }
-            if (moving > 1 && (node.op == Op::Mul || node.op == Op::Div || node.op == Op::MatMul))
-                out.is_affine = false;
-        }
-        return known[id] = out;
-    }
-
-    // What of the point a claim reads but through this vector.
-    unsigned beside(const Claim &claim, NodeId vector) {
-        unsigned out = 0;
-        std::vector<NodeId> todo{claim.of, claim.u, claim.v};
-        std::set<NodeId> seen{vector};
-        while (!todo.empty()) {
-            const NodeId id = todo.back();
-            todo.pop_back();
-            if (!seen.insert(id).second || !graph.reads(id).point) continue;
-            const bool is_leaf =
-                graph[id].op == Op::Point ||
-                (graph[id].op == Op::Swizzle && graph[graph.arg(id, 0)].op == Op::Point);
-            if (is_leaf)
-                out |= below(id).coordinates;
-            else
-                todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
-        }
-        return out;
-    }
+    ReadThrough read{graph};
 
     // No component is more where no coordinate is more than `near_enough`; infinity: not known.
     double reach(NodeId id, int depth = 0) {
@@ -249,7 +195,7 @@ struct Bases {
         std::vector<NodeId> parts;
         const NodeId point = graph.point(ir::Type::Vec3);
         for (int axis = 0; axis < 3; ++axis)
-            if (below(vector).coordinates & (1u << axis))
+            if (read.below(vector).coordinates & (1u << axis))
                 parts.push_back(graph.component(point, axis));
         const int n = ir::components(graph[vector].type);
         if (int(parts.size()) < n) return {};
@@ -280,12 +226,13 @@ std::vector<Inside> seen_from_inside(Graph &graph, const Claim &claim) {
         const ir::Node node = graph[id];
         const bool vector = node.type == ir::Type::Vec2 || node.type == ir::Type::Vec3;
         const bool is_leaf = node.op == Op::Point || node.op == Op::Swizzle;
-        if (vector && !is_leaf && graph.reads(id).point && bases.below(id).is_fold)
+        if (vector && !is_leaf && graph.reads(id).point && bases.read.below(id).is_fold)
             vectors.push_back(id);
     }
     std::ranges::sort(vectors); // arguments first
     std::erase_if(vectors, [&](NodeId id) {
-        return (bases.below(id).coordinates & bases.beside(claim, id)) != 0 ||
+        return (bases.read.below(id).coordinates &
+                bases.read.beside({claim.of, claim.u, claim.v}, {id})) != 0 ||
                !(bases.reach(id) <= farthest);
     });
     std::vector<NodeId> chosen;
@@ -293,8 +240,8 @@ std::vector<Inside> seen_from_inside(Graph &graph, const Claim &claim) {
         const auto it = std::find_if(begin, end, may);
         if (it != end && std::ranges::find(chosen, *it) == chosen.end()) chosen.push_back(*it);
     };
-    const auto is_affine = [&](NodeId id) { return bases.below(id).is_affine; };
-    const auto is_fold = [&](NodeId id) { return !bases.below(id).is_affine; };
+    const auto is_affine = [&](NodeId id) { return bases.read.below(id).is_affine; };
+    const auto is_fold = [&](NodeId id) { return !bases.read.below(id).is_affine; };
     choose(vectors.rbegin(), vectors.rend(), is_affine); // all that is moved and turned
     choose(vectors.begin(), vectors.end(), is_fold);
     choose(vectors.rbegin(), vectors.rend(), is_fold);

@@ -2,6 +2,7 @@
 // largest slope seen.
 #include "proof/field.h"
 
+#include "proof/composed.h"
 #include "proof/jumps.h"
 #include "proof/question.h"
 #include "proof/zones.h"
@@ -327,6 +328,35 @@ std::optional<double> unwound_bound(Flattening &context, const Ranges &ranges, N
 
 } // namespace
 
+namespace {
+
+// By all of the field, and where that is loose from coordinates that turn.
+FieldBound bound_of_all(Flattening &own, const Ranges &all, NodeId copy, const Domain &domain,
+                        const Budget &budget) {
+    const Tape tape = flatten(own, copy);
+    if (budget.most == 0 || !holds_waves(tape)) return search_bound(own, all, tape, domain, budget);
+    Budget first = budget;
+    first.most = 0;
+    FieldBound out = search_bound(own, all, tape, domain, first);
+    const auto is_loose = [&] {
+        return std::isfinite(out.lipschitz) && out.lipschitz > loose * out.sampled &&
+               out.lipschitz > budget.enough;
+    };
+    // Of an angle that moves nothing is known, so that all slopes seen are those of any angle.
+    const ir::Graph::Reads reads = own.graph.reads(copy);
+    const bool moves = reads.time || reads.params;
+    if (is_loose() || (moves && std::isfinite(out.lipschitz)))
+        if (const auto less = unwound_bound(own, all, copy, domain, budget))
+            out.lipschitz = std::min(out.lipschitz, *less);
+    if (!is_loose()) return out;
+    const double unwound = out.lipschitz;
+    out = search_bound(own, all, tape, domain, budget);
+    out.lipschitz = std::min(out.lipschitz, unwound);
+    return out;
+}
+
+} // namespace
+
 FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
                        const Domain &domain, const Budget &budget) {
     Question question(context, ranges, field, Wanted::Bound);
@@ -334,26 +364,15 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
     question.add(domain.zone);
     question.add(budget);
     return std::move(question).answer([&](Flattening &own, const Ranges &all, NodeId copy) {
-        const Tape tape = flatten(own, copy);
-        if (budget.most == 0 || !holds_waves(tape))
-            return search_bound(own, all, tape, domain, budget);
-        Budget first = budget;
-        first.most = 0;
-        FieldBound out = search_bound(own, all, tape, domain, first);
-        const auto is_loose = [&] {
-            return std::isfinite(out.lipschitz) && out.lipschitz > loose * out.sampled &&
-                   out.lipschitz > budget.enough;
-        };
-        // Of an angle that moves nothing is known, so that all slopes seen are those of any angle.
-        const ir::Graph::Reads reads = own.graph.reads(copy);
-        const bool moves = reads.time || reads.params;
-        if (is_loose() || (moves && std::isfinite(out.lipschitz)))
-            if (const auto less = unwound_bound(own, all, copy, domain, budget))
-                out.lipschitz = std::min(out.lipschitz, *less);
-        if (!is_loose()) return out;
-        const double unwound = out.lipschitz;
-        out = search_bound(own, all, tape, domain, budget);
-        out.lipschitz = std::min(out.lipschitz, unwound);
+        FieldBound out = bound_of_all(own, all, copy, domain, budget);
+        if (out.lipschitz <= budget.enough || is_near(own.graph, copy, out)) return out;
+        const bool refused = !std::isfinite(out.lipschitz);
+        const auto parts = bound_by_parts(own, all, copy, domain, budget, refused);
+        if (!parts || !(parts->lipschitz < out.lipschitz)) return out;
+        const double sampled = std::min(out.sampled, parts->lipschitz);
+        out = refused ? *parts : out;
+        out.lipschitz = parts->lipschitz;
+        out.sampled = sampled;
         return out;
     });
 }

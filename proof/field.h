@@ -30,6 +30,7 @@ struct Budget {
     double enough = 0;       // a bound than which none need be less
     double hopeless = ir::rounding::infinity; // a slope seen from which on the bound is of no use
     std::size_t most = 0; // instructions where the bound is far above what is seen; 0: no more
+    int levels = 4;       // of vectors in vectors that a field is looked at through (composed.h)
 };
 
 struct FieldBound {

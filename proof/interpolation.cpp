@@ -15,8 +15,8 @@ namespace fathom::proof {
 namespace {
 
 constexpr std::size_t max_axes = 3, max_nodes_of_interpolation = 400, max_degree = 8;
-constexpr int pieces = 32, trials = 256, max_products = 200; // pieces of 0..1, trials of K
-constexpr double rounded = 1e-12;                            // of numbers near 1
+constexpr int weight_pieces = 32, trials = 256, max_products = 200; // pieces of 0..1, trials of K
+constexpr double rounded = 1e-12;                                   // of numbers near 1
 
 // A polynomial of one number, by powers; and by Bernstein's on a part of 0..1, where it lies between
 // the least and the greatest of these.
@@ -55,18 +55,18 @@ std::vector<double> bernstein(const Powers &a, std::size_t degree, double from, 
 }
 
 // w'^2 and w (1 - w), piece by piece.
-struct Profile {
+struct WeightProfile {
     std::vector<double> slopes, spreads;
 };
-Profile profile(const Powers &w) {
+WeightProfile profile(const Powers &w) {
     Powers slope, rest;
     for (std::size_t i = 1; i < w.size(); ++i) slope.push_back(double(i) * w[i]);
     for (double x : w) rest.push_back(-x);
     rest[0] += 1;
     const Powers steep = product(slope, slope), spread = product(w, rest);
-    Profile out;
-    for (int i = 0; i < pieces; ++i) {
-        const double size = 1.0 / pieces, from = i * size;
+    WeightProfile out;
+    for (int i = 0; i < weight_pieces; ++i) {
+        const double size = 1.0 / weight_pieces, from = i * size;
         for (double x : bernstein(steep, spread.size() - 1, from, size)) out.slopes.push_back(x);
         for (double x : bernstein(spread, spread.size() - 1, from, size)) out.spreads.push_back(x);
     }
@@ -74,7 +74,7 @@ Profile profile(const Powers &w) {
 }
 
 double steepness(const std::vector<Powers> &weights) {
-    std::vector<Profile> profiles;
+    std::vector<WeightProfile> profiles;
     double most = 0;
     for (const Powers &w : weights) {
         profiles.push_back(profile(w));
@@ -84,7 +84,7 @@ double steepness(const std::vector<Powers> &weights) {
     for (int i = 1; i <= trials; ++i) {
         const double k = 4 * most * i / trials;
         double sum = k / 4;
-        for (const Profile &p : profiles) {
+        for (const WeightProfile &p : profiles) {
             double c = 0;
             for (std::size_t j = 0; j < p.slopes.size(); ++j)
                 c = std::max(c, p.slopes[j] - k * p.spreads[j]);

@@ -46,6 +46,7 @@ void Question::add(const Budget &budget) {
     add(budget.enough);
     add(budget.hopeless);
     add(static_cast<double>(budget.most));
+    add(static_cast<double>(budget.levels));
 }
 
 // The ranges of what the field reads, by the numbers that it has in the words.

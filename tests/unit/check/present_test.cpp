@@ -210,8 +210,8 @@ TEST_CASE("a param whose range is refused, and its present value not, builds the
     options = {};
     CHECK(slider.proof_steps > number.proof_steps);
     CHECK(slider.evaluations > number.evaluations);
-    options.limits.proof = slider.proof_steps - number.proof_steps * 3 / 4;
-    CHECK(codes(compiled(text)) == std::vector{Code::LipschitzUnbounded});
+    options.limits.proof = number.proof_steps;
+    CHECK_FALSE(compiled(text).good());
 
     // refused at each value, or for something else: as it was
     options = {};
