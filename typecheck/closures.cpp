@@ -1,6 +1,7 @@
 // See closures.h.
 #include "typecheck/closures.h"
 
+#include "typecheck/conditions.h"
 #include "typecheck/remedies.h"
 
 #include <fmt/format.h>
@@ -132,6 +133,19 @@ Value run_closure(Interpreter &ev, const Value &callee, std::string_view name,
     return v;
 }
 
+// What a function's body demands, of these arguments; gives what does not hold. A library's function
+// is to blame where it is called, any other where it says so.
+static std::optional<ir::Condition> demand(Interpreter &ev, const Specialization &s,
+                                           std::span<const ir::NodeId> args, Span of_library) {
+    if (s.conditions.empty()) return std::nullopt;
+    ir::Substitution map;
+    for (std::size_t i = 0; i < args.size(); ++i) map[s.params[i]] = args[i];
+    std::vector<ir::Condition> conditions = s.conditions;
+    if (of_library.source)
+        for (ir::Condition &condition : conditions) condition.at = users_place(ev, of_library);
+    return put_conditions(ev, conditions, map);
+}
+
 std::optional<Value> specialized(Interpreter &ev, const Value &callee, std::string_view name,
                                  std::span<const Value> known, Span call) {
     std::span<const Value> values = known;
@@ -174,12 +188,14 @@ std::optional<Value> specialized(Interpreter &ev, const Value &callee, std::stri
             function.params.push_back(var);
             v = from_node(ev, var, v.color);
         }
+        const std::size_t demanded = ev.scene.conditions.size();
         std::size_t errors = ev.quiet > 0 ? ev.quiet_errors : ev.diagnostics.errors();
         ++ev.in_field, ev.quiet += open;
         if (open) errors = ev.quiet_errors;
         Value result = run_closure(ev, callee, name, inner, call);
         bool failed = (ev.quiet > 0 ? ev.quiet_errors : ev.diagnostics.errors()) > errors;
         --ev.in_field, ev.quiet -= open;
+        std::vector<ir::Condition> conditions = take_conditions(ev, demanded);
         if (open && (is_poison(result) || failed || !is_numeric(result))) {
             ev.quiet_errors = errors;
             ev.specialized[id] = std::numeric_limits<int>::min();
@@ -192,6 +208,8 @@ std::optional<Value> specialized(Interpreter &ev, const Value &callee, std::stri
         }
         Specialization s;
         s.shape_of_result = result;
+        s.params = function.params;
+        s.conditions = std::move(conditions);
         if (result.kind == ValueKind::Field) {
             for (ir::NodeId free : g.free_vars(node_of(result)))
                 if (std::find(function.params.begin(), function.params.end(), free) ==
@@ -206,10 +224,18 @@ std::optional<Value> specialized(Interpreter &ev, const Value &callee, std::stri
         ++ev.specialized[id];
     }
     const Specialization &s = it->second;
-    if (!s.function) return s.shape_of_result;
     std::vector<ir::NodeId> nodes;
     for (std::size_t i = 0; i < values.size(); ++i)
         if (varies(ev, values[i])) nodes.push_back(to_node(ev, known[i]));
+    if (const auto broken = demand(ev, s, nodes, c.library ? call : Span{})) {
+        if (open) { // its own numbers say what is wrong with them
+            ev.specialized[id] = std::numeric_limits<int>::min();
+            return specialized(ev, callee, name, known, call);
+        }
+        report(ev, Code::BadArgument, broken->at, broken->wanted);
+        return poison();
+    }
+    if (!s.function) return s.shape_of_result;
     return from_node(ev, g.call(s.function, nodes), s.shape_of_result.color);
 }
 

@@ -180,6 +180,8 @@ struct HashOfWords {
 struct Specialization {
     ir::FunctionId function;
     Value shape_of_result; // a Field or constant: kind and colour of what it returns
+    std::vector<ir::NodeId> params;
+    std::vector<ir::Condition> conditions{}; // over these
 };
 
 // A shape that a loop made: what its body gives with the iteration's number left open, and that
@@ -308,12 +310,9 @@ void check_names(Interpreter &ev, const File &ast, std::uint32_t module_frame);
 
 // -- report.cpp
 Diagnostic &report(Interpreter &ev, Code code, Span place, std::string message);
-// What has to hold for all params and times; the proof says whether it does. What reads the point
-// is the field's own: the proof looks at that as it is.
-void require(Interpreter &ev, ir::NodeId condition, Span place, std::string wanted);
+Span users_place(const Interpreter &ev, Span place);     // his own call, of one in the library
 bool is_library_place(const Interpreter &ev, Span span); // or no place at all
-std::string describe(const Interpreter &ev,
-                     const Value &value); // "a float", "a list of 3", "a shape"
+std::string describe(const Interpreter &ev, const Value &value); // "a float", "a list of 3"
 std::string type_of(const Interpreter &ev,
                     const Value &value); // facts.cpp: "float", "(x) -> shape"
 std::string print_value(const Interpreter &ev, const Value &value); // for print(…)

@@ -3,6 +3,7 @@
 // shapes too, each shape of iteration i is what these become at i. Whoever gathers the shapes into
 // a table (instances.cpp) may then compute a column instead of listing it. Says nothing of numbers:
 // what is noted here is checked row by row before it is used (closed_forms.cpp).
+#include "typecheck/conditions.h"
 #include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
 
@@ -70,6 +71,7 @@ void note_iterations(
     if (!item) return;
 
     JournalMark mark = journal_mark(ev);
+    const std::size_t demanded = ev.scene.conditions.size();
     ++ev.quiet, ++ev.symbolic_iterations;
     std::size_t errors = std::exchange(ev.quiet_errors, 0);
     std::vector<Contribution> symbolic;
@@ -78,6 +80,7 @@ void note_iterations(
     ev.quiet_errors = errors;
     --ev.quiet, --ev.symbolic_iterations;
     journal_take(ev, mark);
+    take_conditions(ev, demanded); // each iteration has put its own
     if (failed) return;
 
     ev.loop_variables.push_back(variable);

@@ -2,6 +2,7 @@
 // a number that is not known, the loop becomes a Loop: its body is evaluated once with variables
 // for the index and for all that it assigns. Where that cannot be (the body needs the index at
 // scene time, say), the iterations are written out one by one.
+#include "typecheck/conditions.h"
 #include "typecheck/interpreter.h"
 
 #include "ir/lower/lower.h"
@@ -156,6 +157,22 @@ bool takes_too_long(Interpreter &ev, ir::NodeId loop, Span place) {
     return true;
 }
 
+// Puts what the body demands of library arguments, for each turn. Written out, a turn that breaks it
+// says so itself, or is seen not to be taken; what cannot be written out is refused here.
+enum class Demands { Hold, WriteOut, Refused };
+Demands put_demands(Interpreter &ev, const LoopInput &input, const ir::Loop &loop,
+                    std::span<const ir::NodeId> initial, std::vector<ir::Condition> conditions,
+                    Span place) {
+    const std::size_t before = ev.scene.conditions.size();
+    const auto broken = put_conditions_of_loop(ev, loop, initial, std::move(conditions), place);
+    if (!broken) return Demands::Hold;
+    take_conditions(ev, before);
+    if (!input.condition && loop.max_count <= max_unrolled) return Demands::WriteOut;
+    report(ev, Code::BadArgument, broken->at, broken->wanted)
+        .note("in a turn of this loop it is not");
+    return Demands::Refused;
+}
+
 // Tries the Loop, quietly. On success the assigned variables hold its results and the exit says how
 // it was left.
 std::optional<Exit> try_loop(Interpreter &ev, const LoopInput &input,
@@ -173,6 +190,7 @@ std::optional<Exit> try_loop(Interpreter &ev, const LoopInput &input,
     Value returned_value; // its kind, once seen
     for (int attempt = 0; attempt < 8; ++attempt) {
         JournalMark mark = journal_mark(ev);
+        const std::size_t demanded = ev.scene.conditions.size();
         std::vector<ir::NodeId> vars, next, initial;
         for (Carried &k : carried) {
             if (!is_numeric(k.initial)) {
@@ -194,6 +212,7 @@ std::optional<Exit> try_loop(Interpreter &ev, const LoopInput &input,
         ev.quiet_errors = errors;
         --ev.quiet;
         std::vector<Change> changes = journal_take(ev, mark);
+        std::vector<ir::Condition> conditions = take_conditions(ev, demanded);
         if (failed) return std::nullopt;
 
         bool again = false;
@@ -255,6 +274,9 @@ std::optional<Exit> try_loop(Interpreter &ev, const LoopInput &input,
         loop.next = next;
         if (left_at) go = logical_and(ev, go, logical_not(ev, from_node(ev, vars[*left_at])));
         if (!always(go)) loop.condition = to_node(ev, go);
+        const Demands demands = put_demands(ev, input, loop, initial, std::move(conditions), place);
+        if (demands == Demands::WriteOut) return std::nullopt;
+        if (demands == Demands::Refused) return Exit{};
         ir::LoopId id = g.add_loop(std::move(loop));
         ir::NodeId node = g.make(Op::Loop, g[vars[0]].type, initial, id.index);
         if (takes_too_long(ev, node, place)) return Exit{};

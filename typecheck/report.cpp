@@ -1,4 +1,5 @@
 // How the checker speaks: where an error is shown, and values in words.
+#include "typecheck/conditions.h"
 #include "typecheck/interpreter.h"
 
 #include "base/text.h"
@@ -86,11 +87,13 @@ Diagnostic &report(Interpreter &ev, Code code, Span place, std::string message) 
 
 void require(Interpreter &ev, ir::NodeId condition, Span place, std::string wanted) {
     const ir::Graph::Reads reads = ev.scene.graph.reads(condition);
-    if (ev.quiet > 0 || reads.point || reads.normal || reads.direction) return;
+    if (reads.point || reads.normal || reads.direction) return;
     const Shown where = shown(ev, place);
     ev.scene.conditions.push_back(
         {condition, where.at, with_place(std::move(wanted), where.inside)});
 }
+
+Span users_place(const Interpreter &ev, Span place) { return shown(ev, place).at; }
 
 static const char *vector_name(int size) {
     return size == 2 ? "vec2" : size == 3 ? "vec3" : "vec4";

@@ -1,6 +1,7 @@
 // Blocks and statements, in both places where they stand: a body, whose last expression is its
 // value, and a contributing block (a file, a trailing block, a comprehension), in which every
 // expression counts (semantics.md, 3).
+#include "typecheck/conditions.h"
 #include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
 
@@ -153,7 +154,9 @@ Outcome run_block(Interpreter &ev, const File &ast, lang::BlockId id, std::uint3
 
 Exit run_unless(Interpreter &ev, const Value &skip, Span place, const std::function<Exit()> &rest) {
     JournalMark mark = journal_mark(ev);
+    const std::size_t demanded = ev.scene.conditions.size();
     Exit exit = rest();
+    excuse_conditions(ev, demanded, skip);
     for (const Change &c : journal_take(ev, mark)) {
         auto merged = select_value(ev, skip, c.before, c.after);
         if (!merged) {
@@ -195,10 +198,14 @@ static std::optional<Outcome> run_both(Interpreter &ev, const File &ast, const l
                                        std::size_t branch, const Value &condition,
                                        std::uint32_t frame, Span place) {
     JournalMark mark = journal_mark(ev);
+    std::size_t demanded = ev.scene.conditions.size();
     Outcome a = run_block(ev, ast, node.branches[branch].body, frame);
+    excuse_conditions(ev, demanded, logical_not(ev, condition));
     std::vector<Change> in_a = journal_take(ev, mark);
     mark = journal_mark(ev);
+    demanded = ev.scene.conditions.size();
     Outcome b = run_otherwise(ev, ast, node, branch + 1, frame, place);
+    excuse_conditions(ev, demanded, condition);
     std::vector<Change> in_b = journal_take(ev, mark);
     Outcome out;
     bool ok = true;
@@ -265,6 +272,7 @@ static Outcome run_branches(Interpreter &ev, const File &ast, const lang::If &no
         if (ev.quiet == 0) {
             ++ev.quiet;
             const std::size_t shapes = ev.scene.shapes.size();
+            const std::size_t demanded = ev.scene.conditions.size();
             std::size_t errors = std::exchange(ev.quiet_errors, 0);
             auto both = run_both(ev, ast, node, branch, *condition, frame, place);
             bool failed = ev.quiet_errors > 0 || !both || !is_numeric(both->value);
@@ -272,6 +280,7 @@ static Outcome run_branches(Interpreter &ev, const File &ast, const lang::If &no
             --ev.quiet;
             if (!failed) return *both;
             ev.scene.shapes.forget_origins(shapes);
+            take_conditions(ev, demanded);
         }
         auto known = element_as_known(
             ev, *condition, ast.exprs[node.branches[branch].condition].span, "this condition");

@@ -1,4 +1,5 @@
 // Lists, randomness and what helps to look into a scene: scene time only.
+#include "typecheck/conditions.h"
 #include "typecheck/interpreter.h"
 
 #include "base/text.h"

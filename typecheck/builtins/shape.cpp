@@ -2,6 +2,7 @@
 // begin with `_` and only the library sees them), and the few public forms that the language itself
 // cannot say (`implicit`, `cached`).
 #include "typecheck/builtins/builtins.h"
+#include "typecheck/conditions.h"
 #include "typecheck/instances.h"
 #include "typecheck/textures.h"
 
@@ -171,9 +172,14 @@ static Value cached_call(Interpreter &ev, const CallSite &site, std::vector<Valu
     }
     ir::Graph &g = ev.scene.graph;
     ir::NodeId p = g.fresh_var(Type::Vec3);
+    const std::size_t demanded = ev.scene.conditions.size();
     ++ev.in_field;
     Value v = call_with(ev, args[0], {from_node(ev, p)}, site.arg(0));
     --ev.in_field;
+    if (const auto broken = put_conditions(ev, take_conditions(ev, demanded), {{p, g.point()}})) {
+        report(ev, Code::BadArgument, broken->at, broken->wanted);
+        return poison();
+    }
     if (is_poison(v)) return v;
     bool vector =
         is_numeric(v) && (numeric_type(ev, v) == Type::Vec3 || numeric_type(ev, v) == Type::Vec4);

@@ -1,6 +1,7 @@
 // Transforms, repetition and the regions of `within:`: the intrinsics from which
 // stdlib/transforms.sdf is written.
 #include "typecheck/builtins/builtins.h"
+#include "typecheck/conditions.h"
 #include "typecheck/rewrite_leaves.h"
 
 #include "ir/maps.h"
