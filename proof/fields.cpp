@@ -226,27 +226,6 @@ bool reads_list_by_point(const ir::Graph &graph, const std::vector<NodeId> &root
 
 } // namespace
 
-// The param that a number of the field is divided by, and whose range has 0: the point is none of it.
-std::optional<std::string> Prover::divides_by_0(ShapeId id) {
-    std::vector<NodeId> todo;
-    for (NodeId arg : scene.shapes[id].args)
-        if (arg) todo.push_back(written_out(graph, arg));
-    std::unordered_set<NodeId> seen;
-    while (!todo.empty()) {
-        const NodeId at = todo.back();
-        todo.pop_back();
-        if (!seen.insert(at).second) continue;
-        const NodeId by = graph[at].op == Op::Div ? graph.arg(at, 1) : NodeId();
-        const NodeId one = by && graph[by].op == Op::Splat ? graph.arg(by, 0) : by;
-        if (one && graph[one].op == Op::Param) {
-            const Interval range = range_of(flattening, ranges, one)[0];
-            if (range.lo <= 0 && range.hi >= 0) return scene.params[graph[one].payload].name;
-        }
-        todo.insert(todo.end(), graph.args(at).begin(), graph.args(at).end());
-    }
-    return {};
-}
-
 void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &what) {
     int dims = scene.shapes[id].dims;
     const bool leaf = scene.shapes[id].kind == ShapeKind::Leaf;
@@ -258,14 +237,17 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             d->help("make its loops shorter, " + assume);
         return;
     }
-    std::string cause = cause_text(b.cause);
+    const Blamed blamed = blame(id, b);
+    const bool divides = blamed.node && graph[blamed.node].op == Op::Div;
+    std::string cause = divides ? cause_text(Op::Div) : cause_text(b.cause);
+    if (divides && report_division(id, b, blamed, what)) return;
     const bool endless = !place(id).box.finite() && !place(id).zone;
-    const bool grows = b.trouble == Trouble::None || b.trouble == Trouble::Overflow ||
-                       (b.trouble == Trouble::Singular && only_grows(b.cause));
+    const bool grows = !divides && (b.trouble == Trouble::None || b.trouble == Trouble::Overflow ||
+                                    (b.trouble == Trouble::Singular && only_grows(b.cause)));
     if (b.at_infinity || (grows && endless)) {
         const bool jumps = b.trouble == Trouble::Jump;
-        if (Diagnostic *d = report(
-                id, Code::LipschitzUnbounded,
+        if (Diagnostic *d = report_at(
+                id, blamed, Code::LipschitzUnbounded,
                 jumps ? "it cannot be proved that " + what + " does not jump"
                       : what + " grows steeper without limit, as it is evaluated everywhere"))
             d->note(jumps ? cause + " jumps, and that both sides meet is not seen"
@@ -278,8 +260,8 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     }
     if (grows) {
         if (Diagnostic *d =
-                report(id, Code::LipschitzUnbounded,
-                       what + " is too steep to be bounded near " + point_text(b.where, dims)))
+                report_at(id, blamed, Code::LipschitzUnbounded,
+                          what + " is too steep to be bounded near " + point_text(b.where, dims)))
             d->note("its numbers grow beyond all limits there")
                 .help("choose a smaller region or smaller numbers, " + assume);
         return;
@@ -304,15 +286,16 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             std::string(b.held_params ? ", with each param in the middle of its range" : "") +
             (b.held_time ? ", at time " + number_text(ranges.time.lo) : "");
         if (b.seen_jump) {
-            if (Diagnostic *d =
-                    report(id, Code::FieldJump, what + " jumps near " + point_text(b.where, dims)))
+            if (Diagnostic *d = report_at(id, blamed, Code::FieldJump,
+                                          what + " jumps near " + point_text(b.where, dims)))
                 d->note("it is " + one + " at " + one_side + " and " + other + " at " + other_side +
                         held + ": " + cause)
                     .help((by_list ? between : meeting) + "keep the jump out of the region with " +
                           (has_region ? "`within:`, " : "`.within(…)`, ") + assume);
-        } else if (Diagnostic *d = report(id, Code::LipschitzUnbounded,
-                                          "it cannot be proved that " + what +
-                                              " does not jump near " + point_text(b.where, dims)))
+        } else if (Diagnostic *d =
+                       report_at(id, blamed, Code::LipschitzUnbounded,
+                                 "it cannot be proved that " + what + " does not jump near " +
+                                     point_text(b.where, dims)))
             d->note(cause + " chooses there" +
                     (b.known_sides ? "; its sides meet where they were tried (" +
                                          number_text(b.value_a) + " and " + number_text(b.value_b) +
@@ -324,18 +307,18 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                       assume);
         return;
     }
-    case Trouble::Overflow: // told above
+    case Trouble::Overflow: // else told above
     case Trouble::Singular:
     case Trouble::None:
         if (const auto param = divides_by_0(id)) {
-            if (Diagnostic *d = report(id, Code::FieldSingular,
-                                       what + " is divided by `" + *param + "`, which may be 0"))
+            if (Diagnostic *d = report_at(id, blamed, Code::FieldSingular,
+                                          what + " is divided by `" + *param + "`, which may be 0"))
                 d->help("begin its range above 0, as in `in 0.001..1`");
             return;
         }
-        if (Diagnostic *d = report(id, Code::FieldSingular,
-                                   what + " is undefined or infinitely steep near " +
-                                       point_text(b.where, dims)))
+        if (Diagnostic *d = report_at(id, blamed, Code::FieldSingular,
+                                      what + " is undefined or infinitely steep near " +
+                                          point_text(b.where, dims)))
             d->note(cause + " happens there, and the field is evaluated in all of its region")
                 .help(std::string(has_region
                                       ? "choose a region that avoids it, as in `within: ball(2) - "

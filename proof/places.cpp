@@ -1,14 +1,20 @@
-// Where each shape is evaluated at all: places, from the root down.
+// Where each shape is evaluated at all: places, from the root down. And the place in the text of
+// what a field's bound fails by.
+#include "proof/discontinuities.h"
 #include "proof/prover.h"
 
 #include "ir/maps.h"
+#include "ir/passes/walk.h"
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 namespace fathom::proof {
 
 using ir::MapKind;
+using ir::NodeId;
+using ir::Op;
 using ir::Shape;
 using ir::ShapeId;
 using ir::ShapeKind;
@@ -156,6 +162,188 @@ void Prover::find_places() {
             }
         }
     }
+}
+
+// -- what is to blame, and where it is written. For messages alone: it tries what stands near the
+// place that the search ended at, and proves nothing.
+namespace {
+
+// An operation as it stands in the field, and where it may have been written: a node is one however
+// often its text stands there.
+struct Suspect {
+    NodeId node;
+    std::vector<Span> at;
+};
+
+struct Suspects {
+    ir::Scene &scene;
+    std::size_t left = 20'000; // nodes that are looked at
+    std::vector<Suspect> found{};
+
+    void add_places(NodeId written, std::vector<Span> &out) const {
+        const auto [first, last] = scene.places.equal_range(written);
+        for (auto it = first; it != last; ++it) out.push_back(it->second);
+    }
+    // What stands below `root`, a body in which `map` is put for the parameters.
+    void look(NodeId root, const ir::Substitution &map) {
+        ir::Graph &graph = scene.graph;
+        std::vector<NodeId> todo{root};
+        std::unordered_set<NodeId> seen;
+        while (!todo.empty() && left > 0) {
+            const NodeId id = todo.back();
+            todo.pop_back();
+            if (!id || !seen.insert(id).second) continue;
+            --left;
+            const ir::Node node = graph[id];
+            const std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
+            todo.insert(todo.end(), args.begin(), args.end());
+            std::vector<Span> at;
+            add_places(id, at);
+            if (node.op == Op::Select) add_places(args[0], at);
+            if (!at.empty() || node.op == Op::Div)
+                found.push_back({map.empty() ? id : ir::substitute(graph, id, map), at});
+            if (node.op == Op::Loop) {
+                const ir::Loop loop = graph.loop(ir::LoopId{node.payload});
+                todo.insert(todo.end(), loop.next.begin(), loop.next.end());
+                todo.push_back(loop.condition);
+            }
+            if (node.op != Op::Call) continue;
+            const ir::Function called = graph.function(ir::FunctionId{node.payload});
+            ir::Substitution inner;
+            for (std::size_t i = 0; i < args.size(); ++i)
+                inner[called.params[i]] = ir::substitute(graph, args[i], map);
+            look(called.result, inner);
+        }
+    }
+};
+
+bool encloses(Span outer, Span inner) {
+    return outer.source == inner.source && outer.begin <= inner.begin && inner.end <= outer.end;
+}
+
+// The one place that is meant, where that is clear: of several the one within the shape's own text.
+std::optional<Span> only_one(std::vector<Span> places, Span origin) {
+    const auto single = [](const std::vector<Span> &all) {
+        return !all.empty() &&
+               std::ranges::all_of(all, [&](const Span &at) { return at == all[0]; });
+    };
+    if (single(places)) return places[0];
+    std::erase_if(places, [&](const Span &at) { return !encloses(origin, at); });
+    if (single(places)) return places[0];
+    return std::nullopt;
+}
+
+// The points near where the search ended, those on both sides of a jump among them.
+Cell about(const FieldBound &bound) {
+    Cell out;
+    for (std::size_t i = 0; i < 3; ++i) {
+        double lo = bound.where[i], hi = lo;
+        if (bound.known_sides) {
+            lo = std::min({lo, bound.side_a[i], bound.side_b[i]});
+            hi = std::max({hi, bound.side_a[i], bound.side_b[i]});
+        }
+        const double grown = 1e-6 * std::max(1.0, std::max(std::fabs(lo), std::fabs(hi)));
+        out.p[i] = Interval(lo - grown, hi + grown);
+    }
+    return out;
+}
+
+} // namespace
+
+Prover::Blamed Prover::blame(ShapeId id, const FieldBound &bound) {
+    if (!place(id).reported || work.spent()) return {};
+    Suspects suspects{scene};
+    for (const NodeId arg : scene.shapes[id].args)
+        if (arg) suspects.look(arg, {});
+    std::ranges::sort(suspects.found, {}, &Suspect::node); // what is read comes before what reads
+    // A search that went far off met no place: then 0 is looked for in all of space that is near.
+    constexpr double far = 1e3;
+    const bool anywhere = bound.at_infinity && bound.cause == Op::Div;
+    Cell near = about(bound);
+    for (std::size_t i = 0; anywhere && i < 3; ++i)
+        near.p[i] =
+            Interval(std::max(place(id).box.lo[i], -far), std::min(place(id).box.hi[i], far));
+    // A division by 0 gives what is too large for whatever reads it.
+    const bool grows = bound.trouble == Trouble::None || bound.trouble == Trouble::Overflow;
+    std::vector<Span> alike;
+    for (const Suspect &suspect : suspects.found) {
+        const Op op = graph[suspect.node].op;
+        const bool alike_op = !grows && (!bound.cause || op == *bound.cause);
+        if (!alike_op && (op != Op::Div || bound.trouble == Trouble::Jump)) continue;
+        if (alike_op) alike.insert(alike.end(), suspect.at.begin(), suspect.at.end());
+        if (graph.reads(suspect.node).free_vars) continue; // in a loop: nobody says in which turn
+        if (op == Op::Div) {
+            const std::array<Interval, 16> by =
+                range_of(flattening, ranges, graph.arg(suspect.node, 1), near);
+            const auto parts =
+                static_cast<std::size_t>(ir::components(graph[graph.arg(suspect.node, 1)].type));
+            if (std::none_of(by.begin(), by.begin() + std::ptrdiff_t(parts),
+                             [](const Interval &part) { return part.lo <= 0 && part.hi >= 0; }))
+                continue;
+        }
+        const Tape tape = flatten(flattening, suspect.node);
+        if (tape.too_large) continue;
+        Machine machine(tape, ranges);
+        machine.run(near);
+        if (machine.norm() == ir::rounding::infinity)
+            return {suspect.node, only_one(suspect.at, scene.shapes[id].origin)};
+    }
+    return {{}, only_one(std::move(alike), scene.shapes[id].origin)};
+}
+
+// The param that a number of the field is divided by, and whose range has 0: the point is none of it.
+std::optional<std::string> Prover::divides_by_0(ShapeId id) {
+    std::vector<NodeId> todo;
+    for (NodeId arg : scene.shapes[id].args)
+        if (arg) todo.push_back(written_out(graph, arg));
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId at = todo.back();
+        todo.pop_back();
+        if (!seen.insert(at).second) continue;
+        const NodeId by = graph[at].op == Op::Div ? graph.arg(at, 1) : NodeId();
+        const NodeId one = by && graph[by].op == Op::Splat ? graph.arg(by, 0) : by;
+        if (one && graph[one].op == Op::Param) {
+            const Interval range = range_of(flattening, ranges, one)[0];
+            if (range.lo <= 0 && range.hi >= 0) return scene.params[graph[one].payload].name;
+        }
+        todo.insert(todo.end(), graph.args(at).begin(), graph.args(at).end());
+    }
+    return {};
+}
+
+// A division that no region keeps off 0, as the point has no part in it; and one that is met before
+// any place is told.
+bool Prover::report_division(ShapeId id, const FieldBound &bound, const Blamed &blamed,
+                             const std::string &what) {
+    const NodeId by = graph.arg(blamed.node, 1);
+    const ir::Graph::Reads reads = graph.reads(by);
+    if (reads.point ? !bound.at_infinity : divides_by_0(id).has_value()) return false;
+    Diagnostic *d =
+        report_at(id, blamed, Code::FieldSingular, what + " is divided by what may be 0");
+    if (!d) return true;
+    const std::string keep = "keep it off 0, as with `max(…, 0.001)`";
+    if (reads.point) {
+        d->note("it is 0 at some points, and the field is evaluated everywhere")
+            .help(keep + ", or leave those points out, as in `.within(ball(2) - tube(Y, 0.1))`");
+        return true;
+    }
+    const Interval range = range_of(flattening, ranges, by)[0];
+    d->note("at all points it is from " + number_text(range.lo) + " to " + number_text(range.hi) +
+            (reads.time && reads.params ? ", by the time and by params"
+             : reads.time               ? ", by the time that is covered"
+                                        : ", by a param's range"))
+        .help(keep + (reads.time ? "" : ", or begin the param's range further in"));
+    return true;
+}
+
+Diagnostic *Prover::report_at(ShapeId id, const Blamed &blamed, Code code, std::string message) {
+    if (!blamed.at || work.spent()) return report(id, code, std::move(message));
+    if (!place(id).reported) return nullptr;
+    const Span whole = scene.shapes[id].origin;
+    Diagnostic &d = diagnostics.add(code, *blamed.at, std::move(message));
+    if (!encloses(whole, *blamed.at)) d.label(whole, "in this field");
+    return &d;
 }
 
 } // namespace fathom::proof

@@ -183,7 +183,17 @@ struct Prover {
     // -- reports; silent where the shape is not reported
     static std::string cheaper(const ir::Shape &shape);
     Diagnostic *report(ir::ShapeId id, Code code, std::string message);
+    // What of the shape's field is to blame for what was found of it, and where it is written, where
+    // either is seen: places.cpp.
+    struct Blamed {
+        ir::NodeId node;
+        std::optional<Span> at;
+    };
+    Blamed blame(ir::ShapeId id, const FieldBound &bound);
+    Diagnostic *report_at(ir::ShapeId id, const Blamed &blamed, Code code, std::string message);
     std::optional<std::string> divides_by_0(ir::ShapeId id);
+    bool report_division(ir::ShapeId id, const FieldBound &bound, const Blamed &blamed,
+                         const std::string &what); // false: not said here
     void report_field(ir::ShapeId id, const FieldBound &bound, const std::string &what);
     void test_assumed(ir::ShapeId id, ir::NodeId field, double limit, bool estimate);
     std::vector<std::string>

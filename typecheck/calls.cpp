@@ -1,5 +1,6 @@
 // Calls: their arguments, overloads of the library, builtins and closures (closures.h).
 #include "typecheck/closures.h"
+#include "typecheck/places.h"
 #include "typecheck/remedies.h"
 
 #include "base/suggest.h"
@@ -151,6 +152,7 @@ static Value call_builtin(Interpreter &ev, const Value &callee, std::span<const 
         warn_of_degrees(ev, formals[i], given, given.value);
     }
     const Value v = b.call(ev, site, values);
+    note_place(ev, v, call);
     return b.computes ? computed(ev, v, values, call, quoted(b.name))
                       : in_range(ev, v, values, call);
 }

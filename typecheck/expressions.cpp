@@ -2,6 +2,7 @@
 #include "base/srgb.h"
 #include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
+#include "typecheck/places.h"
 #include "typecheck/remedies.h"
 
 #include "ir/maps.h"
@@ -312,6 +313,7 @@ static Value eval_index(Interpreter &ev, const File &ast, const lang::Index &nod
         ir::TableId id = g.add_table(std::move(table));
         ir::NodeId read = g.make(ir::Op::TableRead, whole ? Type::Float : type, {node_of(index)},
                                  ir::table_slot(id, 0));
+        note_place(ev, from_node(ev, read), index_place);
         if (whole) read = g.make(ir::Op::ToInt, Type::Int, {read});
         return from_node(ev, read, !items.empty() && items[0].color);
     }

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace fathom::typecheck {
 
 using ir::Type;
@@ -35,9 +37,12 @@ static std::optional<Value> numbers_at(Interpreter &ev, const Value &field,
         for (std::size_t i = 0; i < std::max<std::size_t>(used, 1); ++i)
             args.push_back(from_node(ev, inputs[i]));
         if (count == 0) args.clear();
+        const bool own = field.kind != ValueKind::Closure || !ev.closures[field.id].library;
+        const bool outer = std::exchange(ev.own_field, ev.in_field > 0 ? ev.own_field : own);
         ++ev.in_field;
         value = call_with(ev, field, args, place);
         --ev.in_field;
+        ev.own_field = outer;
     } else {
         value = field;
     }

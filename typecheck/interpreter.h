@@ -235,6 +235,7 @@ struct Interpreter {
     int depth = 0;                   // nested evaluations, of any kind
     const char *stack_end = nullptr; // evaluation goes no deeper than this address
     int in_field = 0;                // > 0 while a field's body is evaluated
+    bool own_field = false;          // … and the outermost one is not the library's
     int quiet = 0; // > 0: errors are counted, not reported (overload resolution, trial loops)
     std::size_t quiet_errors = 0;
     std::size_t evaluations = 0;

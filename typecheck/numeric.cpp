@@ -3,6 +3,7 @@
 // way. What is not known becomes a node.
 #include "ir/passes/walk.h"
 #include "typecheck/interpreter.h"
+#include "typecheck/places.h"
 
 #include <fmt/format.h>
 
@@ -427,6 +428,7 @@ Value arithmetic(Interpreter &ev, lang::BinaryOp op, const Value &left, const Va
     const Value v = combined(ev, op, left, right, place, a_place, b_place);
     if (v.kind == ValueKind::Bool || v.kind == ValueKind::Int) return v;
     if (v.kind == ValueKind::Field && numeric_type(ev, v) == Type::Bool) return v; // a comparison
+    note_place(ev, v, place);
     return computed(ev, v, std::array{left, right}, place, quoted(operator_text(op)));
 }
 

@@ -4,6 +4,7 @@
 #include "typecheck/conditions.h"
 #include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
+#include "typecheck/places.h"
 
 #include <fmt/format.h>
 
@@ -197,6 +198,7 @@ static Outcome run_otherwise(Interpreter &ev, const File &ast, const lang::If &n
 static std::optional<Outcome> run_both(Interpreter &ev, const File &ast, const lang::If &node,
                                        std::size_t branch, const Value &condition,
                                        std::uint32_t frame, Span place) {
+    note_place(ev, condition, ast.exprs[node.branches[branch].condition].span);
     JournalMark mark = journal_mark(ev);
     std::size_t demanded = ev.scene.conditions.size();
     Outcome a = run_block(ev, ast, node.branches[branch].body, frame);
