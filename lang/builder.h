@@ -268,6 +268,10 @@ class Builder {
     bool foreign_import(Index at);
     bool foreign_slice(Index at);
     std::string transform_text(Index name) const;
+    std::string lisp_value(Index &at) const;
+    std::string lisp_part(Index at, Index end) const;
+    std::string lisp_form(Index open) const;
+    bool lisp_binding(Index open);
     bool lisp_call(Index at);
     bool joined_by_space(Index at, bool list);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace fathom::lang {
 
@@ -147,30 +148,157 @@ bool Builder::foreign_import(Index at) {
     return true;
 }
 
+// -- names in the parentheses, as libfive and Bauble have them -------------------------------------
+
+// Without parentheses around all of it.
+static std::string bare(const std::string &value) {
+    int depth = 0;
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        depth += value[i] == '(' ? 1 : value[i] == ')' ? -1 : 0;
+        if (depth == 0 && i + 1 < value.size()) return value;
+    }
+    return value.starts_with('(') ? value.substr(1, value.size() - 2) : value;
+}
+
+// One value as it is written here, and past it; empty where it is none.
+std::string Builder::lisp_value(Index &at) const {
+    const Tok found = kind(at);
+    const bool joined = token(at).end == token(at + 1).begin;
+    if (found == Tok::Minus && kind(at + 1) == Tok::Number && joined)
+        return "-" + std::string(text((at += 2) - 1));
+    if (found == Tok::Name && kind(at + 1) == Tok::Minus && joined) return {}; // `box-exact`
+    if (is_one_of(found, {Tok::Number, Tok::Name, Tok::String, Tok::Color, Tok::True, Tok::False}))
+        return std::string(text(at++));
+    if (found == Tok::Open || found == Tok::FreshOpen) {
+        const Index open = std::exchange(at, tokens_.match[at] + 1);
+        return lisp_form(open);
+    }
+    if (found != Tok::ListOpen && found != Tok::FreshListOpen) return {};
+    const Index close = tokens_.match[at++];
+    std::string list = "[";
+    while (at < close) {
+        if (kind(at) == Tok::Comma) ++at;
+        const std::string item = lisp_value(at);
+        if (item.empty()) return {};
+        list += (list.size() > 1 ? ", " : "") + item;
+    }
+    ++at;
+    return list + "]";
+}
+
+// `name a b` up to `end`, as a call; `+ a b` as a sum.
+std::string Builder::lisp_part(Index at, Index end) const {
+    const Tok head = kind(at);
+    const std::string name(text(at));
+    const bool moves = name == "move" || name == "translate";
+    if (is_one_of(head, {Tok::Plus, Tok::Minus, Tok::Star, Tok::Slash})) {
+        std::string sum;
+        int terms = 0;
+        for (Index i = at + 1; i < end; ++terms) {
+            const std::string value = lisp_value(i);
+            if (value.empty()) return {};
+            sum += (terms > 0 ? " " + name + " " : "") + value;
+        }
+        return terms == 0 ? "" : terms == 1 ? name + sum : "(" + sum + ")";
+    }
+    if (head != Tok::Name) { // the value that goes into a pipe
+        const std::string value = lisp_value(at);
+        return at == end ? value : std::string();
+    }
+    std::string arguments, axis;
+    for (Index i = at + 1; i < end;) {
+        const std::string_view word = text(i);
+        const bool names_axis = word == "x" || word == "y" || word == "z";
+        std::string value = lisp_value(i);
+        if (value.empty()) return {};
+        if (names_axis && moves && i < end) {
+            const std::string by = lisp_value(i);
+            if (by.empty()) return {};
+            value += ": " + bare(by);
+        } else if (names_axis) {
+            axis = std::string("axis: ") + static_cast<char>(value[0] - 'x' + 'X');
+            continue;
+        }
+        arguments += (arguments.empty() ? "" : ", ") + bare(value);
+    }
+    if (!axis.empty()) arguments += (arguments.empty() ? "" : ", ") + axis;
+    return (moves ? "translate" : name) + "(" + arguments + ")";
+}
+
+// What stands in parentheses, with Bauble's pipe: `(box 1 | move x 2)`.
+std::string Builder::lisp_form(Index open) const {
+    const Index close = tokens_.match[open];
+    std::string out;
+    for (Index first = open + 1, i = first; i <= close; ++i) {
+        if (tokens_.match[i] > i && i < close) i = tokens_.match[i];
+        if (i < close && kind(i) != Tok::Bar) continue;
+        const bool alone = out.empty() && i < close && first + 1 == i; // `(s | move x 2)`
+        const std::string part = alone ? std::string(text(first)) : lisp_part(first, i);
+        const bool call = kind(first) == Tok::Name && first + 1 < i; // else it may be a union
+        if (part.empty() || (!out.empty() && !call)) return {};
+        out += (out.empty() ? "" : ".") + part;
+        first = i + 1;
+    }
+    return out;
+}
+
+// `(define (f x) …)`, `(def r 20)`.
+bool Builder::lisp_binding(Index open) {
+    const Index define = open + 1, close = tokens_.match[open];
+    if (!is_one_of(text(define), std::array<std::string_view, 4>{"define", "def", "defn", "var"}))
+        return false;
+    const bool function = kind(define + 1) == Tok::Open;
+    const Index name = define + (function ? 2 : 1);
+    if (kind(name) != Tok::Name) return false;
+    std::string head(text(name));
+    Index at = name + 1;
+    if (function) {
+        const Index end = tokens_.match[define + 1];
+        std::string parameters;
+        for (; at < end; ++at)
+            parameters += (parameters.empty() ? "" : ", ") + std::string(text(at));
+        head = "fn " + head + "(" + parameters + ")";
+        at = end + 1;
+    } else
+        head = "let " + head;
+    const std::string value = bare(lisp_value(at));
+    lost_.push_back(name);
+    Diagnostic &d = foreign(span(open, define), function ? "a function is declared with `fn`"
+                                                         : "a name is bound with `let`");
+    if (value.empty() || at != close)
+        d.help("write " + in_code(head + " = …"));
+    else
+        d.help("write " + in_code(head + " = " + value),
+               {{span(open, close), head + " = " + value}});
+    return true;
+}
+
 // `(sphere 100)`, also within `(union (sphere 100) …)`, at the argument.
 bool Builder::lisp_call(Index at) {
-    const Index open = enclosing(at), close = tokens_.match[open], name = open + 1;
-    if (name + 1 != at || kind(close) != Tok::Close) return false;
     const auto stands_apart = [&](Index i) { // no call's bracket, or one behind a space
         return i == 0 || kind(i - 1) != Tok::Name || token(i - 1).end < token(i).begin;
     };
-    if (!stands_apart(open)) return false;
-    std::string call = std::string(text(name)) + "(";
-    bool values = true; // with nothing between them
-    for (Index i = at; i<close; i = tokens_.match[i]> i ? tokens_.match[i] + 1 : i + 1) {
-        const Index last = tokens_.match[i] > i ? tokens_.match[i] : i;
-        values = values && (last > i ||
-                            is_one_of(kind(i), {Tok::Number, Tok::Name, Tok::String, Tok::Color}));
-        call += (i == at ? "" : ", ") + std::string(text(token(i).begin, token(last).end));
-    }
-    call += ")";
+    const auto is_form = [&](Index i) {
+        return kind(tokens_.match[i]) == Tok::Close && stands_apart(i) && tokens_.match[i] > i;
+    };
+    Index open = enclosing(at);
+    const Index inner = open + 1;
+    if (inner + 1 != at || !is_form(open)) return false;
+    for (Index around = enclosing(open);
+         around < open && tokens_.match[around] > open && is_form(around); around = enclosing(open))
+        open = around;
+    if (lisp_binding(open)) return true;
+    std::string call = lisp_form(open);
     const Tok before = open == 0 ? Tok::End : kind(open - 1); // Curv's `f 1 (g 2)` keeps them
     if (is_one_of(before, {Tok::Number, Tok::Close, Tok::ListClose})) call = "(" + call + ")";
-    Diagnostic &d = foreign(span(open, name), "a call's name stands before its parentheses");
-    if (values)
-        d.help("write " + in_code(call), {{span(open, close), call}});
+    Diagnostic &d = foreign(span(open, open + 1), "a call's name stands before its parentheses");
+    if (!call.empty() && call != "()")
+        d.help("write " + in_code(call), {{span(open, tokens_.match[open]), call}});
+    else if (open + 1 == inner)
+        d.help("write " + in_code(std::string(text(inner)) + "(" + std::string(text(at)) + ")"));
     else
-        d.help("write " + in_code(std::string(text(name)) + "(" + std::string(text(at)) + ")"));
+        d.help("write " + in_code(std::string(text(open + 1)) + "(…, …)") +
+               ", with commas between the arguments");
     return true;
 }
 

@@ -85,6 +85,20 @@ bool Builder::foreign_statement(Index first) {
                       {{{id_, token(first).begin, token(end - 1).end}, ""}});
             return true;
         }
+        if (kind(first + 1) == Tok::Star) { // `import *`, `import * from "parts.sdf"`
+            const bool named = kind(end - 1) == Tok::String;
+            withdraw_quotes(first);
+            Diagnostic &d =
+                foreign(span(first, first + 1),
+                        "`import` brings all names of a file, and the library needs none");
+            if (named)
+                d.help("leave `* from` away",
+                       {{{id_, token(first + 1).begin, token(end - 1).begin}, ""}});
+            else
+                d.help("leave the line away",
+                       {{{id_, token(first).begin, token(end - 1).end}, ""}});
+            return true;
+        }
         if (kind(first + 1) == Tok::Open && kind(first + 2) == Tok::String) {
             foreign(span(first, tokens_.match[first + 1]), "a mesh cannot be brought in")
                 .help("`import \"file.sdf\"` brings another scene's names, `distance_grid(file)` a "

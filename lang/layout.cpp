@@ -207,6 +207,9 @@ void Layout::line_begins(const Token &t) {
     if (!lines_count() || out_.tokens.empty() || out_.tokens.back().kind == Tok::End) return;
     if (begins_declaration(t.kind)) return end_statement(); // it is no operand
     const Tok last = previous();
+    const std::size_t before = out_.tokens.size();
+    if (last == Tok::Star && before > 1 && out_.tokens[before - 2].kind == Tok::Import)
+        return end_statement(); // Python's `from … import *`
     if (last == Tok::Body || last == Tok::Trailing || last == Tok::StrayBrace ||
         continues_after(last))
         return;

@@ -403,6 +403,22 @@ bool Lexer::strange_sign(std::uint32_t begin, std::uint32_t end, std::uint32_t c
     return false;
 }
 
+// `$fn = 64;`, and `, $fn = 64` among arguments: all of it. Nothing where no `=` follows.
+std::optional<Span> Lexer::assignment_from(std::uint32_t begin, std::uint32_t end) const {
+    const std::string_view all = source_.text;
+    const std::size_t sign = std::min(all.find_first_not_of(' ', end), all.size());
+    if (sign == all.size() || all[sign] != '=') return std::nullopt;
+    std::size_t last = std::min(all.find_first_of(";\n,)", sign), all.size()), first = begin;
+    const char behind = last < all.size() ? all[last] : '\n';
+    const std::size_t before = begin > 0 ? all.find_last_not_of(' ', begin - 1) : all.npos;
+    const bool after_comma = before != all.npos && all[before] == ',';
+    if ((behind == ',' || behind == ')') && after_comma)
+        first = before;
+    else if (behind == ';' || behind == ',')
+        last = std::min(all.find_first_not_of(' ', last + 1), all.size());
+    return span(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
+}
+
 void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
     if (begin == 0 && slice(begin, end) == "\xEF\xBB\xBF") return; // a byte order mark
     const CodePoint first = decode_utf8(source_.text, begin);
@@ -433,9 +449,12 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
         report(Code::BadCharacter, begin, end, "the language does not use `\\`")
             .help("a function without a name is written `p => …`");
     } else if (text[0] == '$') {
-        report(Code::BadCharacter, begin, end, "the language does not use `$`")
-            .note(
-                "names are plain words; smoothness needs no `$fn`, a distance field has no facets");
+        Diagnostic &d =
+            report(Code::BadCharacter, begin, end, "the language does not use `$`")
+                .note("names are plain words; smoothness needs no `$fn`, a distance field has no "
+                      "facets");
+        if (const std::optional<Span> all = assignment_from(begin, end))
+            d.help("leave it away", {{*all, ""}});
     } else {
         report(Code::BadCharacter, begin, end,
                first.value < 0x20 ? "a control character stands here"

@@ -41,6 +41,7 @@ class Lexer {
     }
     Diagnostic &foreign(std::uint32_t begin, std::uint32_t end, std::string message,
                         std::string replacement);
+    std::optional<Span> assignment_from(std::uint32_t begin, std::uint32_t end) const;
     bool strange_sign(std::uint32_t begin, std::uint32_t end, std::uint32_t code_point);
 
     const Source &source_;

@@ -320,6 +320,17 @@ static void help_with_method(Diagnostic &d, const lang::Member &member, const Fi
             {{angle.source, angle.end, angle.end}, fmt::format(", axis: {}", upper)}});
 }
 
+// `cube(center: true)`: what is wrong with the arguments beside the name, which is that of another
+// language.
+static void check_as_ours(Interpreter &ev, std::string_view name, std::span<const Argument> args,
+                          Span place, Span callee, std::uint32_t frame) {
+    const std::string ours(name_from_elsewhere(name));
+    if (ours.empty() || std::ranges::none_of(args, [](const Argument &a) { return a.name; }))
+        return;
+    const auto f = look_up(ev, frame, intern(ev, ours));
+    if (f && is_function(*f)) call_value(ev, *f, ours, args, place, callee);
+}
+
 Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::Call &call,
                 std::uint32_t frame) {
     Span place = ast.exprs[id].span;
@@ -383,6 +394,7 @@ Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::C
     if (auto *n = std::get_if<lang::Name>(&callee.kind)) name = n->text;
     Value f = eval(ev, ast, call.callee, frame);
     read_arguments(ev, ast, call, frame, args);
+    if (is_poison(f)) check_as_ours(ev, name, args, place, callee.span, frame);
     return call_value(ev, f, name, args, place, callee.span);
 }
 

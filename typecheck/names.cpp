@@ -163,6 +163,8 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string
     const std::string_view way = way_from_elsewhere(name);
     if (!way.empty()) d.help(std::string(way), unit_edit(ev, name, place));
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{place, near}});
+    if (name == "cube" || name == "square")
+        d.note(fmt::format("a `{}` has its middle at the origin", near));
 }
 
 // -- unknown names in bodies that nobody calls ---------------------------------------------------

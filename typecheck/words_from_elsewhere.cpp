@@ -88,6 +88,8 @@ std::string_view name_from_elsewhere(std::string_view name) {
 std::string_view way_from_elsewhere(std::string_view name) {
     static const std::unordered_map<std::string_view, std::string_view> ways = {
         {"morph", "one shape turns into another by `blend(a, b, t)`"},
+        {"sdf", "the library's names stand alone, as in `sphere(1)`"},
+        {"k", "shapes flow together in `smooth_union(k) { … }`"},
         {"smooth", "shapes flow together in `smooth_union(k) { … }`"},
         {"hull", "there is no convex hull; `smooth_union(r) { … }` joins shapes, `round_cone` and "
                  "`capsule` join two balls"},

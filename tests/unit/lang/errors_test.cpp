@@ -30,6 +30,26 @@ void check(const Case &c) {
 
 } // namespace
 
+TEST_CASE("names in the parentheses, and lines that need not be, are answered with our own") {
+    const Case cases[] = {
+        {"(sphere 100)", "foreign-syntax", "sphere(100)"},
+        {"(box 1 2)", "foreign-syntax", "box(1, 2)"},
+        {"(sphere 100 | a)", "foreign-syntax", ""},
+        {"(union (sphere 1) (box [1 -2 3]))", "foreign-syntax",
+         "union(sphere(1), box([1, -2, 3]))"},
+        {"(box 1 | move x 2 | rotate y (* 2 a))", "foreign-syntax",
+         "box(1).translate(x: 2).rotate(2 * a, axis: Y)"},
+        {"(union (sphere 1) (box-exact 2))", "foreign-syntax", ""},
+        {"(define (f x) (+ x (- 1)))", "foreign-syntax", "fn f(x) = x + -1"},
+        {"(def r 20)", "foreign-syntax", "let r = 20"},
+        {"import * from \"a.sdf\"", "foreign-syntax", "import \"a.sdf\""},
+        {"import *\nsphere(1)", "foreign-syntax", "\nsphere(1)"},
+        {"$fn = 64; sphere(1)", "bad-character", "sphere(1)"},
+        {"sphere(1, $fn = 64)", "bad-character", "sphere(1)"},
+    };
+    for (const Case &c : cases) check(c);
+}
+
 TEST_CASE("forms of other languages are answered with our own") {
     const Case cases[] = {
         {"a && b", "foreign-syntax", "a and b"},
@@ -120,9 +140,6 @@ TEST_CASE("forms of other languages are answered with our own") {
         {"let t = (1, 2, 3)", "foreign-syntax", "let t = [1, 2, 3]"},
         {"let l = a ++ b", "foreign-syntax", "let l = concat(a, b)"},
         {"let a, b = 1, 2", "foreign-syntax", ""},
-        {"(sphere 100)", "foreign-syntax", "sphere(100)"},
-        {"(box 1 2)", "foreign-syntax", "box(1, 2)"},
-        {"(sphere 100 | a)", "foreign-syntax", ""},
         {"fn (x) = x", "foreign-syntax", ""},
         {"export default sphere(1)", "foreign-syntax", "sphere(1)"},
         {"param r in 0..2", "param-range", ""},
