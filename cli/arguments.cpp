@@ -100,7 +100,8 @@ void add_size(CLI::App *app, int &width, int &height) {
         ->type_name("WxH");
 }
 
-void add_time(CLI::App *app, double &time, const std::string &help) {
+template <class Time> // a double, or one that need not be given
+void add_time(CLI::App *app, Time &time, const std::string &help) {
     option(
         app, "--time",
         [&time](const std::string &word) {
@@ -252,6 +253,7 @@ struct Reader {
         add_strict_proof(sub, check.scene);
         sub->add_flag("--json", check.json, "one JSON document a scene on standard output");
         sub->add_flag("--explain", check.explain, "show where the bound comes from, as a tree");
+        add_time(sub, check.time, "prove that moment alone, with the params as they are");
         sub->add_flag("--watch", check.watch, "check again after every save");
     }
 

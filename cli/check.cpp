@@ -109,11 +109,16 @@ Exit run(const CheckCommand &command, Terminal &terminal) {
         SceneArguments scene = command.scene;
         scene.file = file;
         const auto act = [&](const v1::CompileResult &result) {
-            return say(command, scene, result, terminal);
+            const bool beyond =
+                result && command.time &&
+                !in_proved_time(result.scene->facts(), *command.time, *command.time, terminal);
+            return beyond ? usage_error : say(command, scene, result, terminal);
         };
-        worst = std::max(worst, command.watch
-                                    ? watch_scene(scene, library_options(scene), terminal, act)
-                                    : act(v1::compile_file(file, library_options(scene))));
+        const v1::CompileOptions options =
+            command.time ? library_options(scene, *command.time, *command.time)
+                         : library_options(scene);
+        worst = std::max(worst, command.watch ? watch_scene(scene, options, terminal, act)
+                                              : act(v1::compile_file(file, options)));
     }
     return worst;
 }

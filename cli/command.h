@@ -45,6 +45,7 @@ struct CheckCommand {
     SceneArguments scene; // its file is each of these in turn
     std::vector<std::string> files;
     bool json = false, explain = false, watch = false;
+    std::optional<double> time; // the moment that is proved alone, with the params' present values
 };
 // `fathom compile`.
 struct CompileCommand {
@@ -131,8 +132,9 @@ struct SolidArguments {
     double tolerance = 0; // the side of the cells; 0: by resolution
     int resolution = 128; // cells along the longest side of the solid's box
     std::optional<std::array<std::array<double, 3>, 2>> bounds;
-    double time = 0;  // with frames, when frame 0 is
-    FrameList frames; // a file for each; empty: one
+    double time = 0;             // with frames, when frame 0 is
+    std::optional<double> until; // the last moment that is looked at; unset: `time`
+    FrameList frames;            // a file for each; empty: one
     double frame_rate = 30;
     std::vector<Sweep> sweeps;
     std::string units;               // what a length of 1 is, a word of unit_names(); empty: unsaid

@@ -35,7 +35,8 @@ Exit exit_of(v1::MeshStatus status) {
 
 // A flat scene is made as thick as it is wide, so that its outlines are far from the ends.
 v1::CompileResult compiled(const SolidArguments &arguments) {
-    v1::CompileOptions options = library_options(arguments.scene);
+    v1::CompileOptions options =
+        library_options(arguments.scene, arguments.time, arguments.until.value_or(arguments.time));
     if (arguments.flat) options.flat_thickness = 1;
     options.fields = arguments.fields;
     v1::CompileResult result = v1::compile_file(arguments.scene.file, options);
@@ -104,6 +105,7 @@ Exit make_frames(const SolidArguments &solid, const std::string &out, Terminal &
         SolidArguments moment = solid;
         if (film.empty()) return moment;
         moment.time = solid.time + film[k] / solid.frame_rate;
+        moment.until = solid.time + film.back() / solid.frame_rate;
         for (Definition &value : swept(solid.sweeps, film, film[k]))
             moment.scene.overrides.push_back(std::move(value));
         return moment;
