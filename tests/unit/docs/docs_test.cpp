@@ -36,7 +36,8 @@ TEST_CASE("the programs on the pages of docs/ work") {
     const std::filesystem::path root = FATHOM_SOURCE_DIR;
     std::size_t count = 0;
     for (const char *page : {"docs/language.md", "docs/tutorial.md", "docs/from-fathom.md",
-                             "docs/from-shadertoy.md"}) {
+                             "docs/from-shadertoy.md", "docs/from-openscad.md", "docs/from-curv.md",
+                             "docs/from-bauble.md", "docs/from-python.md"}) {
         for (const std::string &program : programs(file_text(root / page))) {
             INFO(page << ":\n" << program);
             driver::Compilation c =
