@@ -20,8 +20,14 @@ constexpr std::uint32_t tallest_tree = 1024;
 
 } // namespace
 
+static Token behind(const std::vector<Token> &tokens) {
+    const std::uint32_t end = tokens.empty() ? 0 : tokens.back().end;
+    return {Tok::End, false, end, end};
+}
+
 Builder::Builder(const Source &source, SourceId id, const Tokens &tokens, Diagnostics &diagnostics)
-    : source_(source), id_(id), tokens_(tokens), diagnostics_(diagnostics) {
+    : source_(source), id_(id), tokens_(tokens), past_(behind(tokens.tokens)),
+      diagnostics_(diagnostics) {
     ast_.source = id;
     ast_.exprs.reserve(tokens.tokens.size() / 2);
     expr_heights_.reserve(tokens.tokens.size() / 2);
@@ -303,9 +309,9 @@ void Builder::argument_name(Index at) {
     names_.emplace_back(identifier(at));
     if (kind(at + 1) != Tok::Assign) return;
     // all of one call are one mistake
-    const Index open = enclosing(at), close = tokens_.match[open];
+    const Index open = enclosing(at), close = match(open);
     std::vector<Edit> edits;
-    for (Index i = open + 1; i<close; i = tokens_.match[i]> i ? tokens_.match[i] + 1 : i + 1) {
+    for (Index i = open + 1; i<close; i = match(i)> i ? match(i) + 1 : i + 1) {
         const bool begins = kind(i - 1) == Tok::Comma || i == open + 1;
         if (!begins || kind(i) != Tok::Name || kind(i + 1) != Tok::Assign) continue;
         if (i < at) return;
@@ -364,7 +370,7 @@ void Builder::trailing(Index first, Index last) {
     if (const Name *name = std::get_if<Name>(&ast_.exprs[call->callee].kind);
         name && !call->arguments.empty() && is_foreign_transform(name->text) &&
         !may_be_declared(name->text)) {
-        const Index open = tokens_.match[first - 1];
+        const Index open = match(first - 1);
         const Span head{id_, token(open - 1).begin, token(first - 1).end};
         const std::string chain = "." + transform_text(open - 1);
         foreign(head, "a transform stands behind the shape that it moves")
@@ -374,7 +380,7 @@ void Builder::trailing(Index first, Index last) {
         return;
     }
     if (call->arguments.empty()) {
-        const Index open = tokens_.match[first - 1];
+        const Index open = match(first - 1);
         const std::string name = brief(text(expr.span.begin, token(open).begin));
         foreign(span(open, first - 1), "a block stands directly behind the function's name")
             .help("write `" + name + " { … }`", {{span(open, first - 1), ""}});

@@ -204,10 +204,14 @@ class Builder {
         std::uint32_t height;
     };
 
-    const Token &token(Index at) const { return tokens_.tokens[at]; }
-    Tok kind(Index at) const {
-        return at < tokens_.tokens.size() ? tokens_.tokens[at].kind : Tok::End;
+    // A token, and behind the last a statement's end: who looks ahead need not ask whether there is
+    // anything.
+    const Token &token(Index at) const {
+        return at < tokens_.tokens.size() ? tokens_.tokens[at] : past_;
     }
+    Tok kind(Index at) const { return token(at).kind; }
+    // Of a bracket the index of its partner, of all else its own.
+    Index match(Index at) const { return at < tokens_.match.size() ? tokens_.match[at] : at; }
     std::string_view text(Index at) const { return text_of(source_, token(at)); }
     std::string_view text(std::uint32_t begin, std::uint32_t end) const {
         return std::string_view(source_.text).substr(begin, end - begin);
@@ -215,7 +219,6 @@ class Builder {
     Span span(Index at) const { return {id_, token(at).begin, token(at).end}; }
     Span span(Index first, Index last) const { return {id_, token(first).begin, token(last).end}; }
     Span span(const Item &item) const { return {id_, item.begin, item.end}; }
-    Span place(Index at) const; // of a token, or of the end of the text
     Identifier identifier(Index at) { return {std::string(text(at)), span(at), word(text(at))}; }
     std::uint32_t word(std::string_view text); // of a part of the source
 
@@ -299,6 +302,7 @@ class Builder {
     const Source &source_;
     SourceId id_;
     const Tokens &tokens_;
+    const Token past_;
     Diagnostics &diagnostics_;
     Ast ast_;
     std::unordered_map<std::string_view, std::uint32_t> words_; // into ast_.words

@@ -294,7 +294,7 @@ Builder::Index Builder::statement_end(Index first) const {
     Index i = first;
     while (i < tokens_.tokens.size()) {
         if (opens(kind(i))) {
-            i = tokens_.match[i] + 1;
+            i = match(i) + 1;
         } else if (i >= failed_ && (kind(i) == Tok::BraceClose ||
                                     (kind(i) == Tok::End && kind(i + 1) != Tok::Else))) {
             return i;

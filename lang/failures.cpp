@@ -69,19 +69,13 @@ bool Builder::already_reported(Wanted wanted, Index at) const {
     if (at > 0 && kind(at - 1) == Tok::Bad && kind(at) != Tok::Comma && kind(at) != Tok::End)
         return true;
     if (wanted != Wanted::CloseParen && wanted != Wanted::CloseList) return false;
-    return is_virtual(tokens_.match[enclosing(at)]);
-}
-
-Span Builder::place(Index at) const {
-    if (at < tokens_.tokens.size()) return span(at);
-    const std::uint32_t end = tokens_.tokens.empty() ? 0 : tokens_.tokens.back().end;
-    return {id_, end, end};
+    return is_virtual(match(enclosing(at)));
 }
 
 // The bracket around a token, or 0.
 Builder::Index Builder::enclosing(Index at) const {
     for (Index i = at; i-- > 0;) {
-        const Index partner = tokens_.match[i];
+        const Index partner = match(i);
         if (partner < i)
             i = partner;
         else if (partner > i)
@@ -102,7 +96,7 @@ std::string Builder::describe(Index at) const {
 
 // `s.translate[1, 2, 3]` as a call.
 std::vector<Edit> Builder::call_of_list(Index open) const {
-    const Index close = tokens_.match[open];
+    const Index close = match(open);
     if (open == 0 || kind(open - 1) != Tok::Name || kind(close) != Tok::ListClose) return {};
     return {{{id_, token(open - 1).end, token(open).begin}, "("},
             {{id_, token(close).end, token(close).end}, ")"}};
@@ -117,8 +111,8 @@ void Builder::generic_failure(Wanted wanted, Index at) {
                             .note("`{` opens a block behind a callee, a header, a function's head "
                                   "or `=>`");
         Index first = at; // of the statement
-        while (first > 0 && kind(first - 1) != Tok::End && tokens_.match[first - 1] < first)
-            first = tokens_.match[first - 1];
+        while (first > 0 && kind(first - 1) != Tok::End && match(first - 1) < first)
+            first = match(first - 1);
         const bool is_value = at > first && kind(at - 1) == Tok::Assign;
         if (is_value && kind(first) == Tok::Fn) // `fn f(x) = { … }`
             d.help("a function's body in braces takes no `=`",
@@ -140,7 +134,7 @@ void Builder::generic_failure(Wanted wanted, Index at) {
             .help("the arguments of a call stand in `( … )`", call_of_list(enclosing(at)));
         return;
     }
-    Diagnostic &d = diagnostics_.add(Code::SyntaxError, place(at),
+    Diagnostic &d = diagnostics_.add(Code::SyntaxError, span(at),
                                      "expected " + wanted_text(wanted) + ", found " + describe(at));
     switch (wanted) {
     case Wanted::CloseParen:

@@ -86,14 +86,14 @@ bool Builder::foreign_loop(Index at) {
     if (at == 0 || kind(at - 1) != Tok::For ||
         (kind(at) != Tok::Open && kind(at) != Tok::FreshOpen))
         return false;
-    const Index close = tokens_.match[at];
+    const Index close = match(at);
     const auto inside = [&](Index first, Index last) { // [first, last)
         return first < last ? std::string(text(token(first).begin, token(last - 1).end))
                             : std::string();
     };
     const auto find = [&](Index from, Index to, Tok wanted) {
         while (from < to && kind(from) != wanted)
-            from = tokens_.match[from] > from ? tokens_.match[from] + 1 : from + 1;
+            from = match(from) > from ? match(from) + 1 : from + 1;
         return std::min(from, to);
     };
     Diagnostic &d = foreign(span(at - 1, close), "a loop is written `for i in 0..8 { … }`");
@@ -101,7 +101,7 @@ bool Builder::foreign_loop(Index at) {
         std::vector<Edit> edits{{span(at, close), head}};
         Index end = close + 1; // of a body without braces
         while (!ends_statement(end) && kind(end) != Tok::ListClose && kind(end) != Tok::Close)
-            end = tokens_.match[end] > end ? tokens_.match[end] + 1 : end + 1;
+            end = match(end) > end ? match(end) + 1 : end + 1;
         if (kind(close + 1) != Tok::Body && end > close + 1) {
             edits.push_back({{id_, token(close + 1).begin, token(close + 1).begin}, "{ "});
             edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, " }"});
@@ -122,7 +122,7 @@ bool Builder::foreign_loop(Index at) {
     const Index value = i + 2, end_value = find(value, close, Tok::End);
     if (end_value == close) {
         if (kind(value) != Tok::ListOpen) return propose(name + " in " + inside(value, close));
-        const Index end = tokens_.match[value];
+        const Index end = match(value);
         const Index one = find(value + 1, end, Tok::Colon);
         if (one == end) return propose(name + " in " + inside(value, close));
         const Index two = find(one + 1, end, Tok::Colon);
@@ -149,12 +149,12 @@ bool Builder::foreign_loop(Index at) {
 
 // The parameters between two parentheses, as they would be written here.
 std::string Builder::parameters_text(Index open) const {
-    const Index close = tokens_.match[open];
+    const Index close = match(open);
     std::string out;
     for (Index i = open + 1; i < close;) {
         Index end = i;
         while (end < close && kind(end) != Tok::Comma)
-            end = tokens_.match[end] > end ? tokens_.match[end] + 1 : end + 1;
+            end = match(end) > end ? match(end) + 1 : end + 1;
         while (i + 1 < end && (is_one_of(text(i), qualifiers) || kind(i) == Tok::In)) ++i;
         if (!out.empty()) out += ", ";
         const bool type_first = kind(i) == Tok::Name && kind(i + 1) == Tok::Name && i + 1 < end;
@@ -173,7 +173,7 @@ std::string Builder::parameters_text(Index open) const {
 bool Builder::is_assigned_after(Index name) const {
     constexpr std::array changes{Tok::Assign,     Tok::PlusAssign,  Tok::MinusAssign,
                                  Tok::StarAssign, Tok::SlashAssign, Tok::OtherAssign};
-    const Index open = enclosing(name), partner = tokens_.match[open],
+    const Index open = enclosing(name), partner = match(open),
                 end = partner > open ? partner : Index(tokens_.tokens.size());
     for (Index i = name + 1; i < end; ++i) {
         if (kind(i) != Tok::Name || text(i) != text(name)) continue;
@@ -198,7 +198,7 @@ bool Builder::foreign_head(Index first) {
     if (kind(name + 1) == Tok::Open) {
         const bool is_function = is_one_of(word, function_words) || is_one_of(type, type_words);
         if (!is_function) return false;
-        const Index close = tokens_.match[name + 1];
+        const Index close = match(name + 1);
         if (declared.starts_with("main") && word == "void") {
             foreign(span(first, name), "a scene has no " + in_code(declared))
                 .note("the shapes that stand at top level are the scene");
@@ -317,8 +317,7 @@ bool Builder::foreign_junk(Index first, Index at) {
         return true;
     }
     if (found == Tok::FatArrow) {
-        if (kind(first) != Tok::Name || kind(first + 1) != Tok::Open ||
-            tokens_.match[first + 1] + 1 != at)
+        if (kind(first) != Tok::Name || kind(first + 1) != Tok::Open || match(first + 1) + 1 != at)
             return false;
         foreign(span(first, at), "a function with a name is declared with `fn`")
             .help("write `fn " + std::string(text(token(first).begin, token(at - 1).end)) + " = …`",
@@ -330,7 +329,7 @@ bool Builder::foreign_junk(Index first, Index at) {
         if (first > 0 && kind(first - 1) == Tok::Trailing) { // `torus{major: 2}`
             const Index open = first - 1;
             foreign(span(open), "a call's arguments stand in parentheses")
-                .help("write `( … )`", {{span(open), "("}, {span(tokens_.match[open]), ")"}});
+                .help("write `( … )`", {{span(open), "("}, {span(match(open)), ")"}});
             return true;
         }
         foreign(span(first), "a new name is bound with `let`")

@@ -28,7 +28,7 @@ bool is_foreign_transform(std::string_view name) { return is_one_of(name, transf
 
 // A transform of OpenSCAD as it is written here: angles in degrees, `:` behind names.
 std::string Builder::transform_text(Index name) const {
-    const Index open = name + 1, close = tokens_.match[open];
+    const Index open = name + 1, close = match(open);
     std::string out(text(name));
     const bool rotate = out == "rotate", color = out == "color";
     if (rotate && kind(open + 1) == Tok::ListOpen) out = "rotate_euler";
@@ -38,8 +38,8 @@ std::string Builder::transform_text(Index name) const {
     int depth = 0;
     bool angle = true; // in the first argument
     for (Index i = open; i <= close; ++i) {
-        if (tokens_.match[i] > i) ++depth;
-        if (tokens_.match[i] < i) --depth;
+        if (match(i) > i) ++depth;
+        if (match(i) < i) --depth;
         if (kind(i) == Tok::Comma && depth == 1) angle = false;
         const bool assign = kind(i) == Tok::Assign;
         if (!assign) out += text(end, token(i).begin);
@@ -65,11 +65,10 @@ bool Builder::juxtaposed_calls(Index first, Index at) {
     constexpr int longest_chain = 20;
     std::string chain;
     Index shape = first;
-    for (int links = 0;
-         links < longest_chain && kind(shape) == Tok::Name && kind(shape + 1) == Tok::Open &&
-         kind(tokens_.match[shape + 1] + 1) == Tok::Name;
+    for (int links = 0; links < longest_chain && kind(shape) == Tok::Name &&
+                        kind(shape + 1) == Tok::Open && kind(match(shape + 1) + 1) == Tok::Name;
          ++links) {
-        const Index close = tokens_.match[shape + 1];
+        const Index close = match(shape + 1);
         chain.insert(0, "." + transform_text(shape));
         shape = close + 1;
     }
@@ -79,8 +78,7 @@ bool Builder::juxtaposed_calls(Index first, Index at) {
     std::string moved(text(shape));
     for (const auto &[theirs, ours] : scad_names)
         if (moved == theirs) moved = ours;
-    foreign(span(first, tokens_.match[first + 1]),
-            "a transform stands behind the shape that it moves")
+    foreign(span(first, match(first + 1)), "a transform stands behind the shape that it moves")
         .help("write " + in_code(moved + "(…)" + chain),
               {{{id_, token(first).begin, token(shape).end}, moved},
                {{id_, token(end - 1).end, token(end - 1).end}, chain}});
@@ -110,7 +108,7 @@ bool Builder::separated_unit(Index at) {
 
 // `l[1:3]`, at the colon.
 bool Builder::foreign_slice(Index at) {
-    const Index open = enclosing(at), close = tokens_.match[open];
+    const Index open = enclosing(at), close = match(open);
     const Tok before = open > 0 ? kind(open - 1) : Tok::End;
     const bool index = kind(open) == Tok::ListOpen &&
                        (before == Tok::Name || before == Tok::Close || before == Tok::ListClose);
@@ -170,11 +168,11 @@ std::string Builder::lisp_value(Index &at) const {
     if (is_one_of(found, {Tok::Number, Tok::Name, Tok::String, Tok::Color, Tok::True, Tok::False}))
         return std::string(text(at++));
     if (found == Tok::Open || found == Tok::FreshOpen) {
-        const Index open = std::exchange(at, tokens_.match[at] + 1);
+        const Index open = std::exchange(at, match(at) + 1);
         return lisp_form(open);
     }
     if (found != Tok::ListOpen && found != Tok::FreshListOpen) return {};
-    const Index close = tokens_.match[at++];
+    const Index close = match(at++);
     std::string list = "[";
     while (at < close) {
         if (kind(at) == Tok::Comma) ++at;
@@ -227,10 +225,10 @@ std::string Builder::lisp_part(Index at, Index end) const {
 
 // What stands in parentheses, with Bauble's pipe: `(box 1 | move x 2)`.
 std::string Builder::lisp_form(Index open) const {
-    const Index close = tokens_.match[open];
+    const Index close = match(open);
     std::string out;
     for (Index first = open + 1, i = first; i <= close; ++i) {
-        if (tokens_.match[i] > i && i < close) i = tokens_.match[i];
+        if (match(i) > i && i < close) i = match(i);
         if (i < close && kind(i) != Tok::Bar) continue;
         const bool alone = out.empty() && i < close && first + 1 == i; // `(s | move x 2)`
         const std::string part = alone ? std::string(text(first)) : lisp_part(first, i);
@@ -244,7 +242,7 @@ std::string Builder::lisp_form(Index open) const {
 
 // `(define (f x) …)`, `(def r 20)`.
 bool Builder::lisp_binding(Index open) {
-    const Index define = open + 1, close = tokens_.match[open];
+    const Index define = open + 1, close = match(open);
     if (!is_one_of(text(define), std::array<std::string_view, 4>{"define", "def", "defn", "var"}))
         return false;
     const bool function = kind(define + 1) == Tok::Open;
@@ -253,7 +251,7 @@ bool Builder::lisp_binding(Index open) {
     std::string head(text(name));
     Index at = name + 1;
     if (function) {
-        const Index end = tokens_.match[define + 1];
+        const Index end = match(define + 1);
         std::string parameters;
         for (; at < end; ++at)
             parameters += (parameters.empty() ? "" : ", ") + std::string(text(at));
@@ -279,13 +277,13 @@ bool Builder::lisp_call(Index at) {
         return i == 0 || kind(i - 1) != Tok::Name || token(i - 1).end < token(i).begin;
     };
     const auto is_form = [&](Index i) {
-        return kind(tokens_.match[i]) == Tok::Close && stands_apart(i) && tokens_.match[i] > i;
+        return kind(match(i)) == Tok::Close && stands_apart(i) && match(i) > i;
     };
     Index open = enclosing(at);
     const Index inner = open + 1;
     if (inner + 1 != at || !is_form(open)) return false;
     for (Index around = enclosing(open);
-         around < open && tokens_.match[around] > open && is_form(around); around = enclosing(open))
+         around < open && match(around) > open && is_form(around); around = enclosing(open))
         open = around;
     if (lisp_binding(open)) return true;
     std::string call = lisp_form(open);
@@ -293,7 +291,7 @@ bool Builder::lisp_call(Index at) {
     if (is_one_of(before, {Tok::Number, Tok::Close, Tok::ListClose})) call = "(" + call + ")";
     Diagnostic &d = foreign(span(open, open + 1), "a call's name stands before its parentheses");
     if (!call.empty() && call != "()")
-        d.help("write " + in_code(call), {{span(open, tokens_.match[open]), call}});
+        d.help("write " + in_code(call), {{span(open, match(open)), call}});
     else if (open + 1 == inner)
         d.help("write " + in_code(std::string(text(inner)) + "(" + std::string(text(at)) + ")"));
     else

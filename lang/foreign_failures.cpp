@@ -79,7 +79,7 @@ bool Builder::foreign_list(Index at) {
         return true;
     }
     if (found == Tok::For) {
-        const Index open = enclosing(at), close = tokens_.match[open];
+        const Index open = enclosing(at), close = match(open);
         const std::string item(text(token(open + 1).begin, token(before).end));
         const std::string loop(text(token(at).begin, token(close - 1).end));
         const std::string list = "[" + loop + " { " + item + " }]";
@@ -111,7 +111,7 @@ bool Builder::foreign_group(Index at, bool list) {
         return true;
     }
     if (found == Tok::For) {
-        const Index close = tokens_.match[open];
+        const Index close = match(open);
         Diagnostic &d = diagnostics_.add(Code::WrongPlace, span(at), "a `for` has no value");
         if (at == open + 1 && kind(open - 1) == Tok::Name)
             d.help("a block takes it", {{span(open), " { "}, {span(close), " }"}});
@@ -128,7 +128,7 @@ bool Builder::foreign_group(Index at, bool list) {
     const bool grouping = open > 0 && kind(open) == Tok::Open && kind(open - 1) != Tok::Name &&
                           kind(open - 1) != Tok::Close && kind(open - 1) != Tok::ListClose;
     if (grouping && found == Tok::Comma) { // a tuple
-        const Index close = tokens_.match[open];
+        const Index close = match(open);
         foreign(span(open), "a vector or a list stands in brackets")
             .help("write `[ … ]`", {{span(open), "["}, {span(close), "]"}});
         return true;
@@ -188,7 +188,7 @@ bool Builder::foreign_name(Index at) {
     }
     if (kind(before) == Tok::Let && at < tokens_.tokens.size() &&
         (found == Tok::End || found == Tok::Open)) {
-        const Index close = tokens_.match[at];
+        const Index close = match(at);
         std::vector<Edit> edits;
         if (found == Tok::End) // Curv's: the names follow on lines of their own
             edits.push_back({span(before), ""});

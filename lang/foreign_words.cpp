@@ -59,7 +59,7 @@ bool Builder::foreign_statement(Index first) {
     // `let [a, b] = …`, `const { sphere } = require(…)`
     const bool list = kind(first + 1) == Tok::ListOpen || kind(first + 1) == Tok::FreshListOpen;
     if (binds && (begins_record(first + 1) || list)) {
-        const Index close = tokens_.match[first + 1];
+        const Index close = match(first + 1);
         if (kind(close + 1) != Tok::Assign) return false;
         failed_ = close + 1;
         const bool library = kind(close + 2) == Tok::Name && text(close + 2) == "require";
@@ -100,7 +100,7 @@ bool Builder::foreign_statement(Index first) {
             return true;
         }
         if (kind(first + 1) == Tok::Open && kind(first + 2) == Tok::String) {
-            foreign(span(first, tokens_.match[first + 1]), "a mesh cannot be brought in")
+            foreign(span(first, match(first + 1)), "a mesh cannot be brought in")
                 .help("`import \"file.sdf\"` brings another scene's names, `distance_grid(file)` a "
                       "grid of distances (OpenVDB, NRRD)");
             return true;
@@ -119,7 +119,7 @@ bool Builder::foreign_statement(Index first) {
     if (row == std::end(statement_words) || is_declared(std::string(text(first)))) return false;
     const Tok next = kind(first + 1);
     const bool called = (text(first) == "switch" || text(first) == "match") &&
-                        kind(tokens_.match[first + 1] + 1) == Tok::Trailing;
+                        kind(match(first + 1) + 1) == Tok::Trailing;
     const bool block = text(first) == "try" || text(first) == "do";
     const bool applies = next == Tok::Name || next == Tok::Fn || next == Tok::Less ||
                          next == Tok::True || next == Tok::False ||
@@ -128,13 +128,13 @@ bool Builder::foreign_statement(Index first) {
     failed_ = first + 1;
     std::vector<Edit> unused;
     for (Index i = first + 1; i < tokens_.tokens.size() && !ends_statement(i);
-         i = tokens_.match[i] > i ? tokens_.match[i] + 1 : i + 1)
+         i = match(i) > i ? match(i) + 1 : i + 1)
         if (kind(i) == Tok::Colon) {
             indented_body(i, unused);
             break;
         }
     if (next == Tok::Trailing) { // `try { … } catch (e) { … }`
-        const Index after = tokens_.match[first + 1] + 1;
+        const Index after = match(first + 1) + 1;
         if (kind(after) == Tok::Name && !token(after).first_on_line) failed_ = after;
     }
     Diagnostic &d = foreign(span(first), std::string(row->message));
@@ -233,7 +233,7 @@ void Builder::foreign_then(Index at) {
     const auto end_of = [&](Index i) { // of the branch that begins there
         while (!ends_statement(i) && kind(i) != Tok::Else && kind(i) != Tok::Close &&
                kind(i) != Tok::ListClose && kind(i) != Tok::Comma)
-            i = tokens_.match[i] > i ? tokens_.match[i] + 1 : i + 1;
+            i = match(i) > i ? match(i) + 1 : i + 1;
         return i;
     };
     const auto before = [&](Index i) { return Span{id_, token(i).begin, token(i).begin}; };
@@ -261,7 +261,7 @@ bool Builder::foreign_body(Index at) {
     const Tok found = kind(at);
     body_missing_ = true;
     if (at < tokens_.tokens.size() && found == Tok::End) {
-        foreign(place(at), "a body stands in braces, which begin on the line of its header")
+        foreign(span(at), "a body stands in braces, which begin on the line of its header")
             .help("write `{ … }`");
         return true;
     }
@@ -282,7 +282,7 @@ bool Builder::foreign_body(Index at) {
     if (!statement) return false;
     Index end = at;
     while (!ends_statement(end) && kind(end) != Tok::Else)
-        end = tokens_.match[end] > end ? tokens_.match[end] + 1 : end + 1;
+        end = match(end) > end ? match(end) + 1 : end + 1;
     std::string told = "{ " + std::string(text(token(at).begin, token(end - 1).end)) + " }";
     std::vector<Edit> edits{{{id_, token(at).begin, token(at).begin}, "{ "},
                             {{id_, token(end - 1).end, token(end - 1).end}, " }"}};
@@ -292,8 +292,7 @@ bool Builder::foreign_body(Index at) {
     if (kind(other) == Tok::Else && kind(other + 1) != Tok::If && kind(other + 1) != Tok::Body) {
         const Index begin = other + 1;
         Index last = begin;
-        while (!ends_statement(last))
-            last = tokens_.match[last] > last ? tokens_.match[last] + 1 : last + 1;
+        while (!ends_statement(last)) last = match(last) > last ? match(last) + 1 : last + 1;
         if (other > end) edits.push_back({span(end, other - 1), ""});
         if (last > begin) {
             edits.push_back({{id_, token(begin).begin, token(begin).begin}, "{ "});
@@ -312,7 +311,7 @@ bool Builder::foreign_body(Index at) {
 void Builder::foreign_choice(Index start, Index at) {
     Diagnostic &d = foreign(span(at), "a choice begins with its condition");
     Index other = at + 1;
-    const auto step = [&](Index i) { return tokens_.match[i] > i ? tokens_.match[i] + 1 : i + 1; };
+    const auto step = [&](Index i) { return match(i) > i ? match(i) + 1 : i + 1; };
     const auto stops = [&](Index i) {
         return ends_statement(i) || kind(i) == Tok::Comma || kind(i) == Tok::Close ||
                kind(i) == Tok::ListClose;
@@ -338,13 +337,13 @@ Builder::Index Builder::value_start(Index first, Index at) const {
     Index start = at;
     while (start > first) {
         const Index before = start - 1;
-        if (tokens_.match[before] < before) {
-            start = tokens_.match[before];
+        if (match(before) < before) {
+            start = match(before);
             continue;
         }
         const Tok k = kind(before);
         if (k == Tok::Assign || k == Tok::Comma || k == Tok::Colon || k == Tok::Return ||
-            k == Tok::FatArrow || k == Tok::End || k == Tok::In || tokens_.match[before] > before)
+            k == Tok::FatArrow || k == Tok::End || k == Tok::In || match(before) > before)
             break;
         start = before;
     }
@@ -358,7 +357,7 @@ void Builder::foreign_pipe(Index at) {
                                                 in_code(text(token(sign).begin, token(at).end)));
     const bool call = kind(sign - 1) == Tok::Close && kind(start) == Tok::Name;
     bool chain = call; // of calls: an operand by itself
-    for (Index i = start; chain && i<sign; i = tokens_.match[i]> i ? tokens_.match[i] + 1 : i + 1)
+    for (Index i = start; chain && i<sign; i = match(i)> i ? match(i) + 1 : i + 1)
         chain = kind(i) == Tok::Name || kind(i) == Tok::Dot || kind(i) == Tok::Open;
     const Index name = at + 1, open = at + 2;
     const bool argument = kind(open) == Tok::Number || kind(open) == Tok::Name;
@@ -383,7 +382,7 @@ bool Builder::foreign_concat(Index at) {
     Index end = at + 1;
     while (!ends_statement(end) && kind(end) != Tok::Comma && kind(end) != Tok::Close &&
            kind(end) != Tok::ListClose && kind(end) != Tok::PlusPlus)
-        end = tokens_.match[end] > end ? tokens_.match[end] + 1 : end + 1;
+        end = match(end) > end ? match(end) + 1 : end + 1;
     if (end == at + 1) return false;
     foreign(span(at), "lists are joined by `concat`")
         .help("write `concat(a, b)`", {{{id_, token(start).begin, token(start).begin}, "concat("},
@@ -396,7 +395,7 @@ bool Builder::foreign_concat(Index at) {
 
 // `f({a: 1})`, `f{a: 1}`, `{"a": 1}`: a brace where a value would stand.
 bool Builder::foreign_record(Index brace) {
-    const Index close = tokens_.match[brace];
+    const Index close = match(brace);
     const bool names = kind(brace + 2) == Tok::Colon;
     const bool arguments = brace > 0 && kind(brace - 1) == Tok::Open &&
                            kind(close + 1) == Tok::Close && kind(brace + 1) == Tok::Name;

@@ -61,16 +61,16 @@ template <char sign> struct quoted_by
     : seq<one<sign>, star<pegtl::not_one<sign, '\n'>>, one<sign>> {};
 struct quoted : sor<quoted_by<'\''>, quoted_by<'`'>> {};
 struct hash : seq<one<'#'>, star<word_char>> {};
+// The first alternative spares the signs that begin no longer one all other attempts.
 struct sign
-    : sor<string<'.', '.', '='>, string<'.', '.', '<'>, string<'=', '=', '='>,
-          string<'!', '=', '='>, string<'-', '>'>, string<'=', '>'>, string<'.', '.'>,
-          string<'=', '='>, string<'!', '='>, string<'<', '='>, string<'>', '='>, string<'<', '>'>,
-          string<'&', '&'>, string<'|', '|'>, string<'*', '*'>, string<'+', '='>, string<'-', '='>,
-          string<'*', '='>, string<'/', '='>, string<'%', '='>, string<'^', '='>, string<'|', '='>,
-          string<'&', '='>, string<'+', '+'>,
+    : sor<one<'(', ')', '[', ']', '{', '}', ',', ':', ';', '?'>, string<'.', '.', '='>,
+          string<'.', '.', '<'>, string<'=', '=', '='>, string<'!', '=', '='>, string<'-', '>'>,
+          string<'=', '>'>, string<'.', '.'>, string<'=', '='>, string<'!', '='>, string<'<', '='>,
+          string<'>', '='>, string<'<', '>'>, string<'&', '&'>, string<'|', '|'>, string<'*', '*'>,
+          string<'+', '='>, string<'-', '='>, string<'*', '='>, string<'/', '='>, string<'%', '='>,
+          string<'^', '='>, string<'|', '='>, string<'&', '='>, string<'+', '+'>,
           seq<string<'-', '-'>, at<star<one<' ', '\t', '\r'>>, sor<eof, one<'\n', ';', ')', '}'>>>>,
-          one<'(', ')', '[', ']', '{', '}', ',', ':', '.', ';', '=', '|', '&', '<', '>', '+', '-',
-              '*', '/', '%', '^', '?', '!'>> {};
+          one<'.', '=', '|', '&', '<', '>', '+', '-', '*', '/', '%', '^', '!'>> {};
 // Bytes outside ASCII hang together, with what touches them.
 struct strange
     : sor<seq<one<'$', '@', '~', '\\', '`'>, star<word_char>>,

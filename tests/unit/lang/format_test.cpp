@@ -77,6 +77,7 @@ TEST_CASE("comments stay") {
     CHECK(formatted("/// A\nlet a = 1") == "/// A\nlet a = 1\n");
     CHECK(formatted("a; // A\nb") == "a  // A\nb\n");
     CHECK(formatted("/* A\n     B */\na") == "/* A\n     B */\na\n");
+    CHECK(formatted("// A \r\r\n// B\r \r") == "// A\n// B\n");
 }
 
 TEST_CASE("long lines are broken") {

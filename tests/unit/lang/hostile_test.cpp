@@ -98,3 +98,18 @@ TEST_CASE("a hundred thousand errors are no flood") {
             CHECK(to_text(d, parsed.sources, false).size() < 4000);
     }
 }
+
+TEST_CASE("a word of another language may be the last of the text") {
+    for (const std::string begin : {"", ";", "a\n"})
+        for (const char *last :
+             {"switch", "match", "export default", "try", "do", "import", "import (", "const [",
+              "const {", "let", "for", "if a:", "elif", "else", "#define"}) {
+            const Parsed parsed(begin + last);
+            INFO(parsed.text());
+            CHECK(lang_test::defect(parsed).empty());
+            for (const fathom::Diagnostic &d : parsed.diagnostics.items())
+                CHECK(d.primary.span.end <= parsed.text().size());
+        }
+    CHECK(Parsed(";export default").codes() == std::vector<std::string>{"foreign-syntax"});
+    CHECK(Parsed(";switch").codes().empty()); // a name
+}
