@@ -57,17 +57,22 @@ std::string Builder::doc_above(Index at) const {
         const std::size_t end = offset == 0 ? std::string_view::npos : all.rfind('\n', offset - 1);
         return end == std::string_view::npos ? 0 : end + 1;
     };
-    std::size_t begin = token(at).begin;
-    while (begin > 0 && (all[begin - 1] == ' ' || all[begin - 1] == '\t')) --begin;
+    // what begins with what a formatted text leaves away still begins its line
+    const auto nothing_in = [&](std::size_t first, std::size_t end) {
+        if (first == 0 && all.starts_with("\xEF\xBB\xBF")) first = std::min<std::size_t>(3, end);
+        const std::string_view left = all.substr(first, end - first);
+        return first + std::min(left.find_first_not_of(" \t\r\f\v;"), left.size());
+    };
+    std::size_t begin = line_start(token(at).begin);
+    if (nothing_in(begin, token(at).begin) < token(at).begin) return {};
     std::vector<std::string_view> lines;
-    while (begin > 0 && all[begin - 1] == '\n') {
+    while (begin > 0) {
         const std::size_t above = line_start(begin - 1);
         std::string_view line = all.substr(above, begin - 1 - above);
-        line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+        line.remove_prefix(nothing_in(above, begin - 1) - above);
         if (!line.starts_with("///") || line.starts_with("////")) break;
         line.remove_prefix(line.starts_with("/// ") ? 4 : 3);
-        while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
-        lines.push_back(line);
+        lines.push_back(without_end(line));
         begin = above;
     }
     std::string doc;

@@ -30,8 +30,7 @@ std::vector<Piece> read_pieces(const Source &source, const Tokens &tokens,
             Piece &piece = put(comment.begin, comment.end);
             piece.is_comment = true;
             piece.is_line_comment = comment.is_line;
-            while (comment.is_line && piece.text.find_last_of(" \t\r") == piece.text.size() - 1)
-                piece.text.remove_suffix(1);
+            if (comment.is_line) piece.text = without_end(piece.text);
         }
     };
     for (std::size_t i = 0; i < tokens.tokens.size(); ++i) {

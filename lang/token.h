@@ -121,6 +121,12 @@ Words read_words(const Source &source, SourceId id, Diagnostics &diagnostics); /
 // Settles where statements end, and reports what cannot be a word.
 Tokens lay_out(const Source &source, SourceId id, const Words &words, Diagnostics &diagnostics);
 
+// What stands between words of a line and says nothing (parse.cpp's `blank`).
+constexpr std::string_view blanks = " \t\r\f\v";
+inline std::string_view without_end(std::string_view line) {
+    return line.substr(0, line.find_last_not_of(blanks) + 1);
+}
+
 inline std::string_view text_of(const Source &source, const Token &token) {
     return std::string_view(source.text).substr(token.begin, token.end - token.begin);
 }

@@ -78,6 +78,10 @@ TEST_CASE("comments stay") {
     CHECK(formatted("a; // A\nb") == "a  // A\nb\n");
     CHECK(formatted("/* A\n     B */\na") == "/* A\n     B */\na\n");
     CHECK(formatted("// A \r\r\n// B\r \r") == "// A\n// B\n");
+    check_laws("/// A\t \r\t\n/// \t\nlet a = 1\n"); // what is said of a name stays the same
+    for (const char *text : {"\f\t\r/// A\f\n\v\rlet a = 1\n", "/// A\n; ;let a = 1\n",
+                             "\xEF\xBB\xBF/// A\nlet a = 1\n", "a\n; /// A\nlet b = 1\n"})
+        check_laws(text);
 }
 
 TEST_CASE("long lines are broken") {
