@@ -161,7 +161,9 @@ std::string Names::unique(std::string_view wanted, std::string_view suffix) {
         name += '_';
         name += suffix;
     }
-    if (taken_.try_emplace(name, 1).second) return name;
+    // what is without a letter of ours is called by its kind, `material_1`: the kind itself is a word
+    const bool known = known_words().contains(name);
+    if (!known && taken_.try_emplace(name, 1).second) return name;
     for (;;) {
         std::string numbered = fmt::format("{}_{}", name, ++taken_[name]);
         if (taken_.try_emplace(numbered, 1).second) return numbered;

@@ -241,6 +241,24 @@ TEST_CASE("what is wrong in the content is said with its place, and the rest loa
         std::string::npos);
 }
 
+TEST_CASE("names without a letter of ours hide no word of the language", "[save]") {
+    const auto material = [](const std::string &name) {
+        return "[{Name: " + name +
+               ", Diffuse: {Red: 255, Green: 215, Blue: 0}, Specular: {Red: 255, "
+               "Green: 255, Blue: 255, Exponent: 9}}]";
+    };
+    std::string file =
+        file_of("[Sphere, 球, {Material: 金}]", "[" + material("金") + ", " + material("木") + "]");
+    const std::size_t children = file.find("Children:");
+    REQUIRE(children != file.npos);
+    file.insert(children, "Parameters: [{Name: 高, Type: Float, Value: 1}], ");
+    const Imported imported = import_text(file);
+    CHECK(imported.said() == "");
+    CHECK(imported.result.sdf.find("let material_2 = material(") != std::string::npos);
+    CHECK(imported.result.sdf.find("param param_1: float = 1") != std::string::npos);
+    CHECK(save_test::check_text(imported.result.sdf).errors() == "");
+}
+
 TEST_CASE("strict makes content an error", "[save]") {
     save::ImportOptions strict;
     strict.strict = true;
