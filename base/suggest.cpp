@@ -16,7 +16,9 @@ constexpr std::size_t longest_word = 100;
 } // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
+    const std::size_t width = b.size() + 1;
+    std::vector<std::size_t> rows(3 * width);
+    std::size_t *before = rows.data(), *above = before + width, *row = above + width;
     for (std::size_t j = 0; j <= b.size(); ++j) above[j] = j;
     for (std::size_t i = 1; i <= a.size(); ++i) {
         row[0] = i;
@@ -26,8 +28,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
             const bool swapped = i > 1 && j > 1 && x == folded(b[j - 2]) && folded(a[i - 2]) == y;
             if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
         }
-        before.swap(above);
-        above.swap(row);
+        std::swap(before, above);
+        std::swap(above, row);
     }
     return above[b.size()];
 }

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 namespace fathom::typecheck {
 
@@ -97,19 +96,21 @@ std::optional<Value> look_up(Interpreter &ev, std::uint32_t frame, Symbol name) 
 }
 
 std::vector<std::string> visible_names(Interpreter &ev, std::uint32_t frame) {
-    std::set<std::string> names;
+    std::vector<std::string> names;
+    const auto see = [&](const std::string &name) {
+        if (name[0] != '_' || in_library(ev)) names.push_back(name);
+    };
     for (;;) {
         const Frame &f = ev.frames[frame];
-        for (const Binding &b : f.bindings) names.insert(ev.symbol_names[b.name]);
+        for (const Binding &b : f.bindings) see(ev.symbol_names[b.name]);
         if (f.parent == frame) break;
         frame = f.parent;
     }
-    for (const Builtin &b : builtins()) names.insert(b.name);
-    for (const auto &[name, items] : ev.prelude_items) names.insert(ev.symbol_names[name]);
-    std::vector<std::string> result;
-    for (const std::string &name : names)
-        if (name[0] != '_' || in_library(ev)) result.push_back(name);
-    return result;
+    for (const Builtin &b : builtins()) see(b.name);
+    for (const auto &[name, items] : ev.prelude_items) see(ev.symbol_names[name]);
+    std::ranges::sort(names);
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
 }
 
 bool may_compare_names(Interpreter &ev, std::size_t count) {

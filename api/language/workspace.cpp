@@ -90,7 +90,7 @@ static Workspace made_from_library() {
     return workspace;
 }
 
-Workspace workspace_with_library() {
+const Workspace &workspace_with_library() {
     static const Workspace made = made_from_library();
     return made;
 }

@@ -74,7 +74,7 @@ struct Workspace {
     std::map<std::string, Cached> closed; // files that were read, by path
 };
 
-Workspace workspace_with_library();
+const Workspace &workspace_with_library();
 
 // Throws `Outdated` where nobody waits for it any more.
 struct Outdated : std::exception {
