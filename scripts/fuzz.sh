@@ -13,12 +13,12 @@ fuzz=$root/tests/fuzz
 more="" # seeds that take most of a minute to run through, and so for longer runs alone
 case $target in
 parse_fuzz) length=256 words=fathom.dict seeds="$fuzz/seeds $fuzz/corpus/parse_fuzz" more="$root/examples $root/stdlib" ;;
-compile_fuzz) length=512 words=fathom.dict seeds="$fuzz/seeds $fuzz/corpus/compile_fuzz" more="$root/tests/golden/cases $root/examples" ;;
+compile_fuzz) length=512 words=fathom.dict seeds="$fuzz/seeds $fuzz/corpus/agree_fuzz" more="$root/tests/golden/cases $root/examples" ;;
 agree_fuzz) length=512 words=fathom.dict seeds="$fuzz/seeds $fuzz/corpus/agree_fuzz" more="$root/tests/golden/cases" ;;
 yaml_fuzz) length=512 words=yaml.dict seeds="$fuzz/yaml_seeds $fuzz/corpus/yaml_fuzz" ;;
 save_fuzz) length=1024 words=yaml.dict seeds="$fuzz/yaml_seeds $fuzz/corpus/save_fuzz" ;;
 image_fuzz) length=4096 words=image.dict seeds="$fuzz/image_seeds $fuzz/corpus/image_fuzz" ;;
-lsp_fuzz) length=512 words=fathom.dict seeds="$fuzz/lsp_seeds $fuzz/corpus/lsp_fuzz" more=$fuzz/seeds ;;
+lsp_fuzz) length=512 words=fathom.dict seeds=$fuzz/lsp_seeds more=$fuzz/seeds ;;
 build) ;;
 *) echo "there is no target $target" >&2; exit 2 ;;
 esac
