@@ -3,6 +3,7 @@
 #include "mesh/appearance.h"
 #include "mesh/mend.h"
 #include "mesh/simplify.h"
+#include "mesh/thin.h"
 #include "mesh/write.h"
 
 #include <fmt/format.h>
@@ -23,8 +24,43 @@ Mesh without_mesh(MeshStatus status, std::string message) {
     return mesh;
 }
 
-Mesh refused(const fathom::mesh::Made &made) {
+// What would show what lies in some cells, by samples of it: a sentence's end.
+std::string advice_of(const ir::Scene &scene, const fathom::mesh::Settings &settings,
+                      const fathom::mesh::Octree &octree,
+                      const std::vector<fathom::mesh::Cell> &cells) {
+    constexpr double showing = 1.5; // cells across what is thin
+    fathom::mesh::Progress progress;
+    const fathom::mesh::Lattice &lattice = octree.lattice;
+    std::vector<double> thick;
+    std::size_t touch = 0;
+    const fathom::mesh::Field field(scene, settings.time, settings.bounds);
+    const auto found = thin_in(field, lattice, cells, threads_of(settings), progress);
+    for (const fathom::mesh::Thin &thin : found) {
+        if (thin.thickness > 0) thick.push_back(thin.thickness);
+        touch += thin.touches;
+    }
+    if (touch > thick.size())
+        return "parts of the solid touch there, and rounding leaves open where each ends, which no "
+               "finer mesh tells: let them overlap a little, or move them by the same transforms";
+    if (thick.empty()) return "a finer mesh or a tighter bound tells more";
+    const double thinnest = *std::ranges::min_element(thick), tolerance = thinnest / showing;
+    const std::string what = fmt::format("a wall or a gap there is about {:.2g} thick", thinnest);
+    if (!fathom::mesh::make_lattice(
+            {{lattice.at(0, 0), lattice.at(1, 0), lattice.at(2, 0)},
+             {lattice.at(0, lattice.cells(0)), lattice.at(1, lattice.cells(0)),
+              lattice.at(2, lattice.cells(0))}},
+            tolerance, 0))
+        return what +
+               ", thinner than the finest cells of any mesh: make it thicker, or leave it out";
+    return fmt::format("{}: a tolerance of {:.2g} shows it", what, tolerance);
+}
+
+Mesh refused(const fathom::mesh::Made &made, const ir::Scene &scene,
+             const fathom::mesh::Settings &settings) {
     Refusal why = refusal_of(made.failure, made.place);
+    if (made.failure == fathom::mesh::Failure::Unseen)
+        why.message = "the solid is thinner than the finest cells, if there is one; " +
+                      advice_of(scene, settings, made.octree, made.octree.undecided);
     return without_mesh(why.status, std::move(why.message));
 }
 
@@ -172,6 +208,10 @@ Refusal refusal_of(fathom::mesh::Failure failure, const fathom::mesh::Point &pla
         return {MeshStatus::TooCoarse,
                 "the solid is thinner than the finest cells, if there is one: take a smaller "
                 "tolerance or a larger resolution"};
+    case Failure::Flat:
+        return {MeshStatus::Empty,
+                "this scene is empty but for faces without thickness, where its parts only touch: "
+                "let them overlap"};
     case Failure::Endless:
         return {MeshStatus::Endless,
                 "the solid has no end: cut it off by bounds, or in the scene, as with "
@@ -250,17 +290,19 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
             } else {
                 made = fathom::mesh::make_mesh(ir_of(scene), settings);
             }
-            if (made.failure != fathom::mesh::Failure::None) return refused(made);
+            if (made.failure != fathom::mesh::Failure::None)
+                return refused(made, ir_of(scene), settings);
             if (options.simplify > 0) {
                 mesh.simplification = simplified(made, ir_of(scene), options);
-                if (made.failure != fathom::mesh::Failure::None) return refused(made);
+                if (made.failure != fathom::mesh::Failure::None)
+                    return refused(made, ir_of(scene), settings);
                 if (options.certify && made.simplified > 0) {
                     fathom::mesh::Progress progress;
                     if (options.progress) progress.report = options.progress;
                     progress.from = 0.9;
                     certificate = certify(ir_of(scene), settings, made, progress);
                     if (progress.cancelled) made.failure = fathom::mesh::Failure::Cancelled;
-                    if (progress.cancelled) return refused(made);
+                    if (progress.cancelled) return refused(made, ir_of(scene), settings);
                 }
             }
             if (options.colors) {
@@ -269,8 +311,11 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
                                 mesh);
             }
             if (options.certify) mesh.certificate = certificate_of(certificate);
-            list_undecided(made.octree,
-                           options.certify ? certificate.undecided : made.octree.undecided, mesh);
+            const std::vector<fathom::mesh::Cell> &undecided =
+                options.certify ? certificate.undecided : made.octree.undecided;
+            list_undecided(made.octree, undecided, mesh);
+            if (!undecided.empty())
+                mesh.message = advice_of(ir_of(scene), settings, made.octree, undecided);
             mesh.vertices = std::move(made.mesh.vertices);
             mesh.normals = std::move(made.mesh.normals);
             mesh.triangles = std::move(made.mesh.triangles);

@@ -16,17 +16,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // What may be there and is not in the mesh.
-void say_undecided(const v1::Mesh &mesh, const std::string &what, int resolution,
-                   Terminal &terminal) {
+void say_undecided(const v1::Mesh &mesh, const std::string &what, Terminal &terminal) {
     if (mesh.undecided_cells == 0) return;
     const v1::Box &box = mesh.undecided.front();
-    terminal.say(fmt::format("{}: {} cells may hold surface that the mesh does not show, the first "
-                             "of them from [{:.6g}, "
-                             "{:.6g}, {:.6g}] to [{:.6g}, {:.6g}, {:.6g}]; a finer mesh "
-                             "(`--resolution {}`) or a tighter "
-                             "bound tells more",
-                             what, mesh.undecided_cells, box.lo[0], box.lo[1], box.lo[2], box.hi[0],
-                             box.hi[1], box.hi[2], 2 * resolution));
+    terminal.say(
+        fmt::format("{}: {} cells may hold surface that the mesh does not show, the first "
+                    "of them from [{:.6g}, {:.6g}, {:.6g}] to [{:.6g}, {:.6g}, {:.6g}]; {}",
+                    what, mesh.undecided_cells, box.lo[0], box.lo[1], box.lo[2], box.hi[0],
+                    box.hi[1], box.hi[2], mesh.message));
 }
 
 // The certificate as a document; distances are null where they do not hold everywhere.
@@ -237,19 +234,17 @@ Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &f
         return say_refusal(frame.number ? frame.out : file, "mesh", status, message, terminal);
     }
     const std::string name = command.solid.part.empty() ? name_of(file) : command.solid.part;
-    const int resolution = command.solid.resolution;
     terminal.finish_progress();
     if (command.parts) {
         say_parts(objects.parts, frame.out, terminal);
         for (const v1::PartMesh &part : objects.parts.parts) {
-            say_undecided(part.mesh, fmt::format("{}: part `{}`", frame.out, part.name), resolution,
-                          terminal);
+            say_undecided(part.mesh, fmt::format("{}: part `{}`", frame.out, part.name), terminal);
             say_simplified(part.mesh, fmt::format("{}: part `{}`", frame.out, part.name),
                            command.simplify, terminal);
             objects.all.push_back({part.name, &part.mesh});
         }
     } else {
-        say_undecided(objects.whole, frame.out, resolution, terminal);
+        say_undecided(objects.whole, frame.out, terminal);
         say_simplified(objects.whole, frame.out, command.simplify, terminal);
         objects.all.push_back({name, &objects.whole});
     }

@@ -9,13 +9,13 @@ namespace fathom::mesh {
 namespace {
 
 constexpr int finest_box = 4;        // divisions of a leaf by halves
-constexpr std::size_t seam_work = 3; // divisions of boxes that looking for one is counted as
+constexpr std::size_t seam_work = 3; // divisions of boxes that have to be left to look for one
 constexpr int least_finest_box = 2;  // … of one that is smaller than a drawing cell
 constexpr int seam_depth = 2;        // … of which seams are looked for, and in the whole
 
 struct Box {
     Point lo, hi;
-    bool solid = false; // its middle lies in the solid
+    bool far = false; // there is no mesh near its middle
 };
 Real3 middle_of(const Box &box) {
     Real3 m{};
@@ -50,11 +50,8 @@ std::vector<Box> open_parts(const Inquiry &inquiry, Evaluator &evaluator, cpu::B
             for (std::size_t k = 0; k < 8; ++k) {
                 const Box &part = parts[8 * j + k];
                 if (space_of(evaluator, 16 * j + k, 0.5 * distance(real(part.lo), real(part.hi)),
-                             inquiry.made.octree.lattice.ulp, inquiry.trusts,
-                             true) == Space::Open) {
+                             inquiry.made.octree.lattice.ulp, inquiry.trusts, true) == Space::Open)
                     open.push_back(part);
-                    open.back().solid = evaluator.ranges.result_hi[16 * j + 8 + k] <= 0;
-                }
             }
     }
     return open;
@@ -86,29 +83,38 @@ struct Reach {
     Point doubt{};                      // of what is not decided: about there
 };
 
+// What a piece of work may still take: divisions of boxes, and runs of tapes over boxes where planes
+// that parts touch in may meet.
+struct Budget {
+    std::size_t divisions = 0, close_runs = 0;
+};
+
 // Decided: no surface in a leaf is farther from the mesh than is allowed, but at seams. It would be
 // undecided too where that took more divisions of boxes than are left.
 Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
-               Candidates &candidates, const Cell &leaf, bool searched, std::size_t &divisions) {
+               Candidates &candidates, const Cell &leaf, bool searched, Budget &budget) {
     const Octree &octree = inquiry.made.octree;
     const std::int32_t side = octree.lattice.cells(leaf.level);
     const Node &node = octree.nodes[static_cast<std::size_t>(leaf.node)];
     const cpu::ShortTape &tape = *octree.tapes[static_cast<std::size_t>(node.task)];
     const Box whole{point_of(octree.lattice, leaf.at),
-                    point_of(octree.lattice, corner(leaf.at, side, 7)), node.signs == 0xff};
+                    point_of(octree.lattice, corner(leaf.at, side, 7)), false};
     find_own(inquiry, leaf, candidates);
     // What was divided already is divided less here: it may be divided again.
     const int deepest =
         std::max(least_finest_box, finest_box - std::max(0, leaf.level - octree.lattice.level));
     std::vector<Box> open{whole};
     Reach reach;
-    const auto is_seam = [&](const Box &box) {
-        if (!box.solid || divisions < seam_work) return false;
-        divisions -= seam_work;
-        const auto width =
-            seam_in(evaluator, tape, boxes, box.lo, box.hi, seam_thickness(octree.lattice));
-        if (width) reach.seam_width = std::max(reach.seam_width.value_or(0), *width);
-        return width.has_value();
+    const auto is_seam = [&](const Box &box, bool closely) {
+        if (budget.divisions < seam_work) return false;
+        std::size_t runs = 0;
+        closely = closely && budget.close_runs > 0;
+        const auto seam = seam_in(evaluator, tape, boxes, box.lo, box.hi,
+                                  seam_thickness(octree.lattice), closely, &runs);
+        std::size_t &left = closely ? budget.close_runs : budget.divisions;
+        left -= std::min(left, runs);
+        if (seam) reach.seam_width = std::max(reach.seam_width.value_or(0), seam->width);
+        return seam.has_value();
     };
     for (int depth = 0; !open.empty(); ++depth) {
         std::vector<Box> left;
@@ -125,17 +131,20 @@ Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
             if (d <= enough)
                 reach.farthest = std::max(reach.farthest, (d + half) * outward);
             else
-                left.push_back(box);
+                left.push_back({box.lo, box.hi, d >= inquiry.allowed});
         }
-        if (depth % seam_depth == 0 && depth < deepest) std::erase_if(left, is_seam);
+        if (depth % seam_depth == 0 && depth < deepest)
+            std::erase_if(left, [&](const Box &box) {
+                return (box.far || depth > 0) && is_seam(box, depth > 0 || searched);
+            });
         if (left.empty()) break;
-        if (depth == deepest || searched || left.size() > divisions) {
+        if (depth == deepest || searched || left.size() > budget.divisions) {
             reach.decided = false;
             for (std::size_t i = 0; i < 3; ++i)
                 reach.doubt[i] = static_cast<float>(middle_of(left[left.size() / 2])[i]);
             break;
         }
-        divisions -= left.size();
+        budget.divisions -= left.size();
         open = open_parts(inquiry, evaluator, boxes, tape, left);
     }
     return reach;
@@ -143,6 +152,7 @@ Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
 
 constexpr std::size_t piece_of_work = 512;
 constexpr std::size_t divisions_a_leaf = 32; // of boxes, on average over a piece of work
+constexpr std::size_t close_runs = 8192;     // in a piece of work
 
 struct Certifier {
     explicit Certifier(const Field &field) : evaluator(field) {}
@@ -175,13 +185,13 @@ void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progres
         found.size(), threads, progress, [&] { return Certifier(inquiry.field); },
         [&](Certifier &memory, std::size_t number) {
             const std::size_t end = std::min(leaves.size(), (number + 1) * piece_of_work);
-            std::size_t divisions = divisions_a_leaf * piece_of_work;
+            Budget budget{divisions_a_leaf * piece_of_work, close_runs};
             for (std::size_t k = number * piece_of_work; k < end; ++k) {
                 const bool in_vain = std::ranges::binary_search(searched, leaves[k].node);
                 const Reach reach = reach_in(inquiry, memory.evaluator, memory.boxes,
-                                             memory.candidates, leaves[k], in_vain, divisions);
+                                             memory.candidates, leaves[k], in_vain, budget);
                 Found &here = found[number];
-                here.divisions = divisions_a_leaf * piece_of_work - divisions;
+                here.divisions = divisions_a_leaf * piece_of_work - budget.divisions;
                 if (!reach.decided) {
                     here.undecided.push_back(leaves[k]);
                     here.doubts.push_back(reach.doubt);

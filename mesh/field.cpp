@@ -28,6 +28,18 @@ void cut_ranges(Evaluator &evaluator, const cpu::Boxes &boxes) {
         }
 }
 
+// Some steps of a tape, from `first` on, below `last`.
+cpu::Selection steps_of(const Field &field, const cpu::ShortTape &tape, std::size_t first,
+                        std::size_t last) {
+    cpu::Selection selection = tape.selection(field.parts);
+    std::size_t loops = 0; // before the first step, which have rows of their own
+    for (std::size_t k = 0; k < first; ++k)
+        loops += selection.table[selection.steps[k]].kind == cpu::StepKind::Loop;
+    selection.steps = selection.steps.subspan(first, last - first);
+    selection.loops = selection.loops.subspan(loops);
+    return selection;
+}
+
 } // namespace
 
 Field::Field(const ir::Scene &scene, double time, const std::optional<ir::Box> &box)
@@ -102,6 +114,27 @@ void ranges_over(Evaluator &evaluator, const cpu::ShortTape &tape, const cpu::Bo
         if (is_point(k))
             evaluator.ranges.result_lo[k] = evaluator.ranges.result_hi[k] =
                 evaluator.point_values[n++];
+}
+
+void ranges_where(Evaluator &evaluator, const cpu::ShortTape &tape, const cpu::Boxes &boxes,
+                  const std::vector<Held> &held) {
+    const Field &field = evaluator.field;
+    cpu::Shortener &memory = evaluator.ranges;
+    cpu::enter_boxes(field.parts, memory, boxes);
+    std::size_t done = 0;
+    for (const Held &hold : held) {
+        cpu::run_steps(field.parts, memory, steps_of(field, tape, done, hold.where.step + 1));
+        done = hold.where.step + 1;
+        for (std::size_t k = 0; k < hold.ranges.size(); ++k) {
+            float &lo = memory.lo[hold.where.address + k], &hi = memory.hi[hold.where.address + k];
+            // A range without a number holds nowhere: then anything may be said of it.
+            lo = std::min(std::max(lo, hold.ranges[k][0]), hi);
+            hi = std::max(std::min(hi, hold.ranges[k][1]), lo);
+        }
+    }
+    cpu::run_steps(field.parts, memory, steps_of(field, tape, done, tape.steps.size()));
+    cpu::take_results(field.parts, memory);
+    cut_ranges(evaluator, boxes);
 }
 
 TapePtr shortened(Evaluator &evaluator, const TapePtr &tape, std::size_t box) {

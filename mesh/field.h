@@ -64,6 +64,21 @@ void gradients_at(Evaluator &evaluator, const cpu::ShortTape &tape, const Points
 // Into evaluator.ranges.result_lo and result_hi: what the values in each box lie within. Of a box that
 // is a point, the value there, which its range may be wider than.
 void ranges_over(Evaluator &evaluator, const cpu::ShortTape &tape, const cpu::Boxes &boxes);
+// A number that a tape computes on its way: the one that its step `step` (of those of the tape, in
+// order) writes to `address`.
+struct Register {
+    std::size_t step = 0;
+    std::uint32_t address = 0;
+};
+// … and what it is held between, by box.
+struct Held {
+    Register where;
+    std::vector<std::array<float, 2>> ranges;
+};
+// As ranges_over, of those points alone at which these numbers, in the order of their steps, lie in
+// their ranges.
+void ranges_where(Evaluator &evaluator, const cpu::ShortTape &tape, const cpu::Boxes &boxes,
+                  const std::vector<Held> &held);
 // After ranges_over, with the same tape: a tape that holds in one of the boxes; the same one where a
 // shorter one does not pay.
 TapePtr shortened(Evaluator &evaluator, const TapePtr &tape, std::size_t box);

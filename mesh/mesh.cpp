@@ -1,6 +1,7 @@
 #include "mesh/mesh.h"
 
 #include "backend-cpu/prune/solid_box.h"
+#include "mesh/thin.h"
 
 #include <cmath>
 
@@ -22,6 +23,14 @@ Failure untangle(Made &made, const Field &field, const OctreeSettings &settings,
             return Failure::Contradicted;
         }
         if (made.loops.tangled.empty()) return Failure::None;
+        if (round == 0 &&
+            thinner_in(field, made.octree, made.loops.tangled, settings.threads, progress)) {
+            // Their parts would be as tangled. They are listed, and those alone divided that have to be.
+            made.octree.undecided.insert(made.octree.undecided.end(), made.loops.tangled.begin(),
+                                         made.loops.tangled.end());
+            made.octree.settled = made.octree.lattice.level;
+            continue;
+        }
         divided.insert(divided.end(), made.loops.tangled.begin(), made.loops.tangled.end());
         divide(made.octree, field, made.loops.tangled, settings, progress);
     }
@@ -108,7 +117,8 @@ Failure finish_mesh(Made &made, const Field &field, const Settings &settings, st
     made.root_slack = std::move(vertices.root_slack);
     progress.phase(to);
     if (!made.mesh.triangles.empty()) return Failure::None;
-    return made.octree.undecided.empty() ? Failure::Empty : Failure::Unseen;
+    if (!made.octree.undecided.empty()) return Failure::Unseen;
+    return made.octree.seams.empty() ? Failure::Empty : Failure::Flat;
 }
 
 } // namespace fathom::mesh

@@ -28,6 +28,7 @@ enum class Failure : std::uint8_t {
     Empty,       // no point lies in the solid
     Outside,     // … of those in the bounds
     Unseen,      // something may lie in it, but no corner of the finest cells
+    Flat,        // nothing lies in it but sheets without thickness, where its parts only touch
     Endless,     // no box holds the solid
     TooFine,     // more than 8,192 cells a side, or floats cannot tell such cells apart
     TooMany,     // cells or triangles than can be counted

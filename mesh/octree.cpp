@@ -1,6 +1,7 @@
 #include "mesh/octree.h"
 
 #include "mesh/seams.h"
+#include "mesh/thin.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,8 @@ namespace {
 
 // How many boxes are looked at for what no corner shows: so many, or so many a crossed cell.
 constexpr std::size_t least_hidden_boxes = 2'000'000, hidden_boxes_a_cell = 64;
-constexpr int task_levels = 4; // of a task, down to the lattice's level
+constexpr std::size_t most_close = 4096; // cells that are looked into closely for seams
+constexpr int task_levels = 4;           // of a task, down to the lattice's level
 
 // One thread's memory for dividing.
 struct Divider {
@@ -93,11 +95,11 @@ std::vector<Branch> divide_top(Octree &octree, const Field &field, const OctreeS
     return branches;
 }
 
-std::uint64_t key_of(const Index &at) {
+std::uint64_t corner_key(const Index &at) {
     return std::uint64_t(std::uint32_t(at[0])) << 42 | std::uint64_t(std::uint32_t(at[1])) << 21 |
            std::uint64_t(std::uint32_t(at[2]));
 }
-Index index_of(std::uint64_t key) {
+Index corner_of_key(std::uint64_t key) {
     constexpr std::uint64_t mask = (std::uint64_t{1} << 21) - 1;
     return {static_cast<std::int32_t>(key >> 42), static_cast<std::int32_t>(key >> 21 & mask),
             static_cast<std::int32_t>(key & mask)};
@@ -109,19 +111,19 @@ void sign(Divider &divider, const Lattice &lattice, const cpu::ShortTape &tape,
     divider.keys.clear();
     for (const Cell &cell : cells)
         for (int c = 0; c < 8; ++c)
-            divider.keys.push_back(key_of(corner(cell.at, lattice.cells(cell.level), c)));
+            divider.keys.push_back(corner_key(corner(cell.at, lattice.cells(cell.level), c)));
     std::ranges::sort(divider.keys);
     divider.keys.erase(std::unique(divider.keys.begin(), divider.keys.end()), divider.keys.end());
     divider.points.clear();
     for (const std::uint64_t key : divider.keys)
-        divider.points.add(point_of(lattice, index_of(key)));
+        divider.points.add(point_of(lattice, corner_of_key(key)));
     values_at(divider.evaluator, tape, divider.points, divider.values);
     for (const Cell &cell : cells) {
         std::uint8_t &signs = nodes[static_cast<std::size_t>(cell.node)].signs;
         signs = 0;
         for (int c = 0; c < 8; ++c) {
             const auto at = std::ranges::lower_bound(
-                divider.keys, key_of(corner(cell.at, lattice.cells(cell.level), c)));
+                divider.keys, corner_key(corner(cell.at, lattice.cells(cell.level), c)));
             if (divider.values[static_cast<std::size_t>(at - divider.keys.begin())] <= 0)
                 signs |= static_cast<std::uint8_t>(1 << c);
         }
@@ -233,8 +235,8 @@ void graft_all(Octree &octree, const Field &field, const std::vector<Cell> &cell
               trees[k]);
 }
 
-// Takes those cells away in which parts of the solid touch: they are solid, or seams.
-void find_seams(Octree &octree, const Field &field, std::vector<Cell> &cells,
+// Takes those cells away in which parts of the solid only touch: they are of one sign, or seams.
+void find_seams(Octree &octree, const Field &field, std::vector<Cell> &cells, bool closely,
                 const OctreeSettings &settings, Progress &progress) {
     constexpr std::size_t group = 64;
     std::vector<double> widths(cells.size(), -1); // -1: no seam
@@ -244,15 +246,14 @@ void find_seams(Octree &octree, const Field &field, std::vector<Cell> &cells,
                     const std::size_t end = std::min(cells.size(), (number + 1) * group);
                     for (std::size_t k = number * group; k < end; ++k) {
                         const Node &node = octree.nodes[static_cast<std::size_t>(cells[k].node)];
-                        if (node.signs != 0xff) continue;
+                        if (node.crossed()) continue;
                         const std::int32_t side = octree.lattice.cells(cells[k].level);
-                        if (const auto width =
-                                seam_in(divider.evaluator,
-                                        *octree.tapes[static_cast<std::size_t>(node.task)],
-                                        divider.boxes, point_of(octree.lattice, cells[k].at),
-                                        point_of(octree.lattice, corner(cells[k].at, side, 7)),
-                                        seam_thickness(octree.lattice)))
-                            widths[k] = *width;
+                        const auto seam = seam_in(
+                            divider.evaluator, *octree.tapes[static_cast<std::size_t>(node.task)],
+                            divider.boxes, point_of(octree.lattice, cells[k].at),
+                            point_of(octree.lattice, corner(cells[k].at, side, 7)),
+                            seam_thickness(octree.lattice), closely);
+                        if (seam && seam->solid == (node.signs != 0)) widths[k] = seam->width;
                     }
                 });
     if (progress.cancelled) return;
@@ -261,7 +262,8 @@ void find_seams(Octree &octree, const Field &field, std::vector<Cell> &cells,
         if (widths[k] < 0) {
             left.push_back(cells[k]);
         } else if (widths[k] == 0) {
-            octree.nodes[static_cast<std::size_t>(cells[k].node)].space = Space::Inside;
+            Node &node = octree.nodes[static_cast<std::size_t>(cells[k].node)];
+            node.space = node.signs != 0 ? Space::Inside : Space::Outside;
         } else {
             octree.seams.push_back(cells[k].node);
             octree.seam_width = std::max(octree.seam_width, widths[k]);
@@ -281,8 +283,11 @@ void search_hidden(Octree &octree, const Field &field, const OctreeSettings &set
         else if (!beside_crossed(octree, cell))
             cells.push_back(cell);
     }
-    find_seams(octree, field, cells, settings, progress);
+    find_seams(octree, field, cells, false, settings, progress);
+    // Where planes meet in which parts touch, cells lie in lines; where walls are thin there are many.
+    if (cells.size() <= most_close) find_seams(octree, field, cells, true, settings, progress);
     std::size_t boxes = std::max(least_hidden_boxes, hidden_boxes_a_cell * crossed);
+    if (thinner_in(field, octree, cells, settings.threads, progress)) boxes = 0;
     for (int level = octree.lattice.level; level < octree.settled && !cells.empty(); ++level) {
         if (16 * cells.size() > boxes) break;
         boxes -= 16 * cells.size();

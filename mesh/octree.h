@@ -40,8 +40,8 @@ struct Octree {
     // Open leaves without a crossed one beside them: the field does not say whether surface is in
     // them, by the work that was spent on it.
     std::vector<Cell> undecided;
-    // Open leaves of the same kind that are solid but for gaps of this width together at most: parts
-    // touch there.
+    // Open leaves of the same kind that are solid but for gaps of this width together at most, or empty
+    // but for sheets of this thickness: parts only touch there.
     std::vector<std::int32_t> seams; // nodes
     double seam_width = 0;
     bool full = false; // more than most_nodes were wanted: it is not whole

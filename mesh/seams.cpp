@@ -1,18 +1,36 @@
 #include "mesh/seams.h"
 
+#include "mesh/slopes.h"
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace fathom::mesh {
 namespace {
 
-constexpr std::size_t cuts = 8;      // that a slab is cut into
-constexpr std::size_t most_open = 3; // at one time: a plane lies in two at most
-constexpr double most_thin = 8;      // all gaps together
-constexpr int most_cuttings = 24;    // floats cannot tell more cuts of cuts apart
+constexpr std::size_t cuts = 8;        // that a slab is cut into
+constexpr std::size_t most_open = 3;   // at one time: a plane lies in two at most
+constexpr double most_thin = 32;       // all gaps or sheets together
+constexpr int most_cuttings = 24;      // floats cannot tell more cuts of cuts apart
+constexpr std::size_t most_levels = 6; // that are tried
+constexpr double along_gradient = 0.9; // the cosine from where a number may vary as the field does
+constexpr std::size_t most_runs = 400; // of the tape, for one box
+constexpr int most_strips = 2;         // planes that meet the last one: three do in a corner
+
+// A direction that a box may be cut across: an axis, or a number that changes over it.
+struct Across {
+    std::size_t axis = 3; // 3: a number
+    Level level;
+};
+
+// Part of a box that may be a seam: what lies between two ends across each of its directions.
+struct Place {
+    std::vector<std::array<float, 2>> ends; // by direction: the axes come first
+};
 
 struct Slab {
-    std::size_t axis = 0; // which it is at right angles to
+    std::size_t across = 0; // direction
     float lo = 0, hi = 0;
 };
 
@@ -23,7 +41,7 @@ void cut_up(const Slab &slab, std::vector<Slab> &to) {
     bool zero = slab.lo < 0 && slab.hi > 0;
     const auto add = [&](float until) {
         if (!(from < until)) return;
-        to.push_back({slab.axis, from, until});
+        to.push_back({slab.across, from, until});
         from = until;
     };
     for (std::size_t k = 1; k < cuts; ++k) {
@@ -36,50 +54,198 @@ void cut_up(const Slab &slab, std::vector<Slab> &to) {
     add(slab.hi);
 }
 
-// Takes those away that are solid.
-void leave_open(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
-                const Point &lo, const Point &hi, std::vector<Slab> &slabs) {
-    boxes.count = slabs.size();
-    for (std::size_t k = 0; k < slabs.size(); ++k) {
-        for (std::size_t i = 0; i < 3; ++i) boxes.lo[i][k] = lo[i], boxes.hi[i][k] = hi[i];
-        boxes.lo[slabs[k].axis][k] = slabs[k].lo, boxes.hi[slabs[k].axis][k] = slabs[k].hi;
+float ulp_of(const Slab &slab) {
+    const float size = std::max(std::fabs(slab.lo), std::fabs(slab.hi));
+    return std::nextafter(size, std::numeric_limits<float>::infinity()) - size;
+}
+
+// The look for seams in one box.
+struct Look {
+    Evaluator &evaluator;
+    const cpu::ShortTape &tape;
+    cpu::Boxes &boxes;
+    bool solid = false;
+    double thin = 0;
+    std::vector<Across> directions;
+    std::size_t runs = 0; // of the tape over boxes
+
+    // Takes those slabs of a place away in which there is nothing of the other sign.
+    void leave_open(const Place &place, std::vector<Slab> &slabs) {
+        if (slabs.empty()) return;
+        ++runs;
+        const std::size_t count = slabs.size();
+        boxes.count = (count + 15) / 16 * 16;
+        std::vector<Held> held;
+        for (std::size_t d = 0; d < directions.size(); ++d) {
+            std::vector<std::array<float, 2>> ranges(boxes.count, place.ends[d]);
+            bool some = place.ends[d] != std::array{directions[d].level.lo, directions[d].level.hi};
+            for (std::size_t k = 0; k < boxes.count; ++k)
+                if (const Slab &slab = slabs[std::min(k, count - 1)]; slab.across == d)
+                    ranges[k] = {slab.lo, slab.hi}, some = true;
+            for (std::size_t k = 0; d < 3 && k < boxes.count; ++k)
+                boxes.lo[d][k] = ranges[k][0], boxes.hi[d][k] = ranges[k][1];
+            if (d >= 3 && some) held.push_back({directions[d].level.where, std::move(ranges)});
+        }
+        if (held.empty())
+            ranges_over(evaluator, tape, boxes);
+        else
+            ranges_where(evaluator, tape, boxes, held);
+        std::vector<Slab> left;
+        for (std::size_t k = 0; k < count; ++k)
+            if (solid ? !(evaluator.ranges.result_hi[k] <= 0)
+                      : !(evaluator.ranges.result_lo[k] > 0))
+                left.push_back(slabs[k]);
+        slabs = std::move(left);
     }
-    ranges_over(evaluator, tape, boxes);
-    std::vector<Slab> left;
-    for (std::size_t k = 0; k < slabs.size(); ++k)
-        if (!(evaluator.ranges.result_hi[k] <= 0)) left.push_back(slabs[k]);
-    slabs = std::move(left);
+
+    // How wide at most the places are along one axis at which what was cut has the values of a slab.
+    double width_of(const Slab &slab) const {
+        const double width = double(slab.hi) - slab.lo;
+        const Across &across = directions[slab.across];
+        return slab.across < 3 ? width : (width + 2 * across.level.error) / across.level.slope;
+    }
+    // Whether cutting it has come to its end.
+    bool is_thin(const Slab &slab) const {
+        return (slab.across >= 3 && slab.hi - slab.lo <= 2 * ulp_of(slab)) ||
+               width_of(slab) <= thin;
+    }
+
+    // Slabs of one kind, of which those are left that may have something of the other sign: how wide
+    // all together are once they are thin.
+    std::optional<double> thin_out(const Place &place, std::vector<Slab> slabs) {
+        double width = 0;
+        for (int round = 0; round < most_cuttings && !slabs.empty(); ++round) {
+            if (slabs.size() > most_open) return std::nullopt;
+            std::vector<Slab> next;
+            for (const Slab &slab : slabs)
+                if (is_thin(slab))
+                    width += width_of(slab);
+                else
+                    cut_up(slab, next);
+            if (width > most_thin * thin) return std::nullopt;
+            slabs = std::move(next);
+            leave_open(place, slabs);
+        }
+        return slabs.empty() ? std::optional(width) : std::nullopt;
+    }
+
+    // The rest of a place beyond one of its ends across a direction, as far as nothing is there, and a
+    // thin slab with it; and how wide that is. `open`: what is open across it.
+    std::optional<double> strip(const Place &place, const std::vector<Slab> &open, bool high,
+                                Place &rest) {
+        Slab last = high ? open.back() : open.front();
+        const std::size_t d = last.across;
+        if (high ? last.hi == place.ends[d][1] : last.lo == place.ends[d][0]) return std::nullopt;
+        for (int round = 0; round < most_cuttings && !is_thin(last); ++round) {
+            std::vector<Slab> parts;
+            cut_up(last, parts);
+            leave_open(place, parts);
+            if (parts.empty()) return std::nullopt; // the next one is where it ends
+            last = high ? parts.back() : parts.front();
+        }
+        if (!is_thin(last)) return std::nullopt;
+        // As much again: a plane between two slabs lies in both.
+        const float more = std::max(last.hi - last.lo, 2 * ulp_of(last));
+        (high ? last.lo : last.hi) += high ? -more : more;
+        rest = place;
+        (high ? rest.ends[d][1] : rest.ends[d][0]) = high ? last.lo : last.hi;
+        if (!(rest.ends[d][0] < rest.ends[d][1])) return std::nullopt;
+        return width_of(last);
+    }
+
+    // Across each direction in turn; then where planes meet, so that one of them is stripped off first.
+    std::optional<double> width_in(const Place &place, int strips) {
+        std::vector<std::vector<Slab>> open(directions.size());
+        std::vector<Slab> slabs;
+        for (std::size_t d = 0; d < 3; ++d) cut_up({d, place.ends[d][0], place.ends[d][1]}, slabs);
+        leave_open(place, slabs);
+        for (const Slab &slab : slabs) open[slab.across].push_back(slab);
+        for (std::size_t d = 0; d < directions.size(); ++d) {
+            if (d >= 3) {
+                cut_up({d, place.ends[d][0], place.ends[d][1]}, open[d]);
+                leave_open(place, open[d]);
+            } else if (!(place.ends[d][0] < place.ends[d][1])) {
+                continue;
+            }
+            if (const auto width = thin_out(place, open[d])) return width;
+        }
+        for (std::size_t d = 0; d < directions.size(); ++d)
+            for (const bool high : {false, true}) {
+                Place rest;
+                if (strips == 0 || runs > most_runs) return std::nullopt;
+                if (open[d].empty()) continue;
+                const auto stripped = strip(place, open[d], high, rest);
+                if (!stripped) continue;
+                if (const auto width = width_in(rest, strips - 1);
+                    width && *width + *stripped <= most_thin * thin)
+                    return *width + *stripped;
+            }
+        return std::nullopt;
+    }
+};
+
+// Some places in a box, none of them likely to lie in a plane that people choose.
+Points places_in(const Point &lo, const Point &hi) {
+    constexpr double shares[][3] = {{0.51, 0.49, 0.53}, {0.07, 0.19, 0.11}, {0.93, 0.13, 0.23},
+                                    {0.17, 0.91, 0.29}, {0.89, 0.83, 0.17}, {0.13, 0.23, 0.91},
+                                    {0.87, 0.31, 0.83}, {0.29, 0.87, 0.79}, {0.79, 0.93, 0.93}};
+    Points points;
+    for (const auto &share : shares) {
+        Point p{};
+        for (std::size_t i = 0; i < 3; ++i)
+            p[i] = static_cast<float>(lo[i] + share[i] * (double(hi[i]) - lo[i]));
+        points.add(p);
+    }
+    return points;
+}
+
+// Whether a number may be what the field depends on somewhere here: it changes in the same direction.
+bool may_hold(const Level &level, const std::array<std::vector<float>, 4> &slopes) {
+    for (std::size_t k = 0; k < slopes[0].size(); ++k) {
+        double product = 0, a = 0, b = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            product += level.gradient[i] * slopes[1 + i][k];
+            a += level.gradient[i] * level.gradient[i];
+            b += double(slopes[1 + i][k]) * slopes[1 + i][k];
+        }
+        if (std::fabs(product) > along_gradient * std::sqrt(a * b)) return true;
+    }
+    return false;
 }
 
 } // namespace
 
-std::optional<double> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
-                              const Point &lo, const Point &hi, double thin) {
-    std::vector<Slab> slabs;
-    std::array<std::size_t, 3> open{};
+std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
+                            const Point &lo, const Point &hi, double thin, bool closely,
+                            std::size_t *runs) {
+    const Points points = places_in(lo, hi);
+    std::vector<float> values;
+    values_at(evaluator, tape, points, values);
+    const bool solid = values[0] <= 0;
+    for (const float value : values)
+        if ((value <= 0) != solid) return std::nullopt;
+    Look look{evaluator, tape, boxes, solid, thin, {}, 0};
+    Place place;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        cut_up({axis, lo[axis], hi[axis]}, slabs);
-        if (!(lo[axis] < hi[axis])) open[axis] = std::numeric_limits<std::size_t>::max();
+        look.directions.push_back({axis, {{}, lo[axis], hi[axis], 1, 0, {}}});
+        place.ends.push_back({lo[axis], hi[axis]});
     }
-    leave_open(evaluator, tape, boxes, lo, hi, slabs);
-    for (const Slab &slab : slabs) ++open[slab.axis];
-    const auto axis =
-        static_cast<std::size_t>(std::min_element(open.begin(), open.end()) - open.begin());
-    std::erase_if(slabs, [&](const Slab &slab) { return slab.axis != axis; });
-    double width = 0;
-    for (int round = 0; round < most_cuttings && !slabs.empty(); ++round) {
-        if (slabs.size() > most_open) return std::nullopt;
-        std::vector<Slab> next;
-        for (const Slab &slab : slabs)
-            if (double(slab.hi) - slab.lo <= thin)
-                width += double(slab.hi) - slab.lo;
-            else
-                cut_up(slab, next);
-        if (width > most_thin * thin) return std::nullopt;
-        slabs = std::move(next);
-        if (!slabs.empty()) leave_open(evaluator, tape, boxes, lo, hi, slabs);
+    std::optional<double> width = look.width_in(place, 0);
+    if (!width) {
+        std::array<std::vector<float>, 4> slopes;
+        gradients_at(evaluator, tape, points, slopes);
+        ++look.runs;
+        for (const Level &level : levels_in(evaluator, tape, boxes, lo, hi)) {
+            if (!may_hold(level, slopes) || !(level.lo < level.hi)) continue;
+            if (look.directions.size() == 3 + most_levels) break;
+            look.directions.push_back({3, level});
+            place.ends.push_back({level.lo, level.hi});
+        }
+        if (closely || look.directions.size() > 3)
+            width = look.width_in(place, closely ? most_strips : 0);
     }
-    return slabs.empty() ? std::optional(width) : std::nullopt;
+    if (runs) *runs += look.runs;
+    return width ? std::optional(Seam{solid, *width}) : std::nullopt;
 }
 
 } // namespace fathom::mesh

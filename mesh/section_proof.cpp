@@ -64,9 +64,8 @@ double reach_of(const Plane2 &plane, const Lines &lines, const std::vector<std::
     return (d + half_diagonal_of(r)) * rounded_out;
 }
 
-// Whether parts of the solid touch in a rectangle, and nothing else is in it that is not solid.
-std::optional<double> touching_in(const Rectangle &r, FlatBoxes &boxes,
-                                  const cpu::ShortTape &tape) {
+// Whether parts of the solid only touch in a rectangle.
+std::optional<Seam> touching_in(const Rectangle &r, FlatBoxes &boxes, const cpu::ShortTape &tape) {
     const Plane2 &plane = boxes.plane;
     return seam_in(boxes.evaluator, tape, boxes.boxes, plane.point(r.lo[0], r.lo[1]),
                    plane.point(r.hi[0], r.hi[1]), seam_thickness(plane.lattice));
@@ -83,17 +82,20 @@ void certify_border(const Plane2 &plane, const Squares &squares, const Lines &li
         const cpu::ShortTape &tape = *squares.tapes[static_cast<std::size_t>(square.tile)];
         std::vector<Rectangle> open{rectangle_of(plane, square)};
         const std::vector<std::int32_t> near = nearness.about(square);
-        // Counted as solid, or as open where it has a gap.
+        // Counted as what it is but for gaps and sheets, or as open where it has any.
         const auto is_seam = [&](const Rectangle &r) {
             if (!(reach_of(plane, lines, near, r) > plane.side())) return false;
-            const std::optional<double> width = touching_in(r, boxes, tape);
-            if (width) (*width > 0 ? open_area : inside) += area_of(r);
-            return width.has_value();
+            const std::optional<Seam> seam = touching_in(r, boxes, tape);
+            if (seam && seam->width > 0)
+                open_area += area_of(r);
+            else if (seam && seam->solid)
+                inside += area_of(r);
+            return seam.has_value();
         };
         // What is far from all contours is open to the end where the plane lies in a face.
         const int halvings = near.empty() ? halvings_of_squares / 2 : halvings_of_squares;
         for (int level = 0; !open.empty(); ++level) {
-            if (square.solid() && level % seam_depth == 0) std::erase_if(open, is_seam);
+            if (level % seam_depth == 0) std::erase_if(open, is_seam);
             if (level == halvings) break;
             open = open_quarters(boxes, tape, open, inside);
         }

@@ -430,8 +430,7 @@ Shortener::Shortener(const PruneProgram &parts) {
     }
 }
 
-void run_over(const PruneProgram &parts, Shortener &shortener, const Selection &from,
-              const Boxes &boxes) {
+void enter_boxes(const PruneProgram &parts, Shortener &shortener, const Boxes &boxes) {
     const Program &program = *parts.program;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         std::copy_n(boxes.lo[axis].begin(), boxes.count,
@@ -440,13 +439,26 @@ void run_over(const PruneProgram &parts, Shortener &shortener, const Selection &
                     shortener.hi.begin() + program.params[axis].address);
     }
     shortener.boxes = boxes.count;
-    RangeRunner(parts, shortener, boxes.count).run(from);
-    const Program::Slot &result = program.results[0];
-    for (std::size_t k = 0; k < boxes.count; ++k) {
+}
+
+void run_steps(const PruneProgram &parts, Shortener &shortener, const Selection &steps) {
+    RangeRunner(parts, shortener, shortener.boxes).run(steps);
+}
+
+void take_results(const PruneProgram &parts, Shortener &shortener) {
+    const Program::Slot &result = parts.program->results[0];
+    for (std::size_t k = 0; k < shortener.boxes; ++k) {
         const std::size_t at = result.address + (result.shared ? 0 : k);
         shortener.result_lo[k] = shortener.lo[at];
         shortener.result_hi[k] = shortener.hi[at];
     }
+}
+
+void run_over(const PruneProgram &parts, Shortener &shortener, const Selection &from,
+              const Boxes &boxes) {
+    enter_boxes(parts, shortener, boxes);
+    run_steps(parts, shortener, from);
+    take_results(parts, shortener);
 }
 
 } // namespace fathom::cpu

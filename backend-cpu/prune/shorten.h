@@ -123,6 +123,11 @@ struct Shortener {
     std::array<float, max_boxes> result_lo{}, result_hi{}; // of the first result, by box
 };
 
+// What `run_over` does, in parts: between them the ranges of what was computed so far may be read, and
+// narrowed (mesh/held.h). `steps`: some of a tape's, those before them run.
+void enter_boxes(const PruneProgram &parts, Shortener &shortener, const Boxes &boxes);
+void run_steps(const PruneProgram &parts, Shortener &shortener, const Selection &steps);
+void take_results(const PruneProgram &parts, Shortener &shortener);
 // First what a tape that holds in all boxes comes to in each, then, box by box, what of it is left.
 void run_over(const PruneProgram &parts, Shortener &shortener, const Selection &from,
               const Boxes &boxes);

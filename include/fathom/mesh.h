@@ -116,7 +116,7 @@ struct MeshSimplification {
  *  threads. Empty unless `status` is Done. */
 struct Mesh {
     MeshStatus status = MeshStatus::Done;
-    std::string message; /**< why there is none, and what to do: a sentence in lower case */
+    std::string message; /**< why there is none, or what shows undecided cells: in lower case */
     std::vector<Point> vertices, normals;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     /** With MeshOptions::colors: the surface's own colour at each vertex, linear, 0..1, without light

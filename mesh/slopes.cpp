@@ -1,0 +1,245 @@
+#include "mesh/slopes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fathom::mesh {
+namespace {
+
+using cpu::Kernel;
+
+constexpr double unit_roundoff = 0x1p-22; // four times that of floats: functions are right to that
+constexpr double inward = 1 - 1e-6;       // what sums of doubles may take
+
+struct Interval {
+    double lo = 0, hi = 0;
+};
+Interval operator+(Interval a, Interval b) { return {a.lo + b.lo, a.hi + b.hi}; }
+Interval operator*(Interval a, Interval b) {
+    const double p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
+    return {std::min({p, q, r, s}), std::max({p, q, r, s})};
+}
+Interval hull(Interval a, Interval b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
+double size(Interval a) { return std::max(std::fabs(a.lo), std::fabs(a.hi)); }
+
+// A number over a box: its range, what its slopes along the axes lie within wherever it has any (it
+// is continuous), and how far its floats are from the real number at most.
+struct Varying {
+    bool known = false;
+    Interval range;
+    std::array<Interval, 3> slope{};
+    double error = 0;
+};
+
+// f(a, b, …) of which the partial derivatives lie within `by`; its own rounding is part of the sizes
+// of `terms`, what is added up.
+Varying chained(std::initializer_list<std::pair<const Varying *, Interval>> parts, double terms) {
+    Varying made;
+    made.known = true;
+    made.error = unit_roundoff * terms;
+    for (const auto &[part, by] : parts) {
+        made.known = made.known && part->known;
+        made.error += size(by) * part->error;
+        for (std::size_t i = 0; i < 3; ++i) made.slope[i] = made.slope[i] + by * part->slope[i];
+    }
+    return made;
+}
+
+// a·x + b·y + …
+Varying sum_of_products(const Varying *a, const Varying *b, std::size_t count) {
+    Varying made;
+    made.known = true;
+    for (std::size_t k = 0; k < count; ++k) {
+        const Varying part = chained({{&a[k], b[k].range}, {&b[k], a[k].range}},
+                                     size(a[k].range) * size(b[k].range));
+        made.known = made.known && part.known;
+        made.error += static_cast<double>(count) * part.error;
+        for (std::size_t i = 0; i < 3; ++i) made.slope[i] = made.slope[i] + part.slope[i];
+    }
+    return made;
+}
+
+// The length of a vector.
+Varying length_of(const Varying *x, std::size_t count) {
+    double least = 0, most = 0; // squares
+    for (std::size_t k = 0; k < count; ++k) {
+        const Interval r = x[k].range;
+        const double low = r.lo > 0 ? r.lo : r.hi < 0 ? -r.hi : 0;
+        least += low * low;
+        most += size(r) * size(r);
+    }
+    const double shortest = std::sqrt(least), longest = std::sqrt(most);
+    Varying made;
+    made.known = true;
+    made.error = static_cast<double>(count) * unit_roundoff * longest;
+    for (std::size_t k = 0; k < count; ++k) {
+        const Interval r = x[k].range;
+        Interval share{-1, 1}; // of the component in the length
+        if (shortest > 0) {
+            share.lo = std::max(-1.0, r.lo / (r.lo < 0 ? shortest : longest));
+            share.hi = std::min(1.0, r.hi / (r.hi > 0 ? shortest : longest));
+        }
+        made.known = made.known && x[k].known;
+        made.error += x[k].error;
+        for (std::size_t i = 0; i < 3; ++i) made.slope[i] = made.slope[i] + share * x[k].slope[i];
+    }
+    return made;
+}
+
+constexpr Interval one{1, 1}, minus_one{-1, -1};
+
+Varying minus(const Varying &a, const Varying &b) {
+    Varying made = chained({{&a, one}, {&b, minus_one}}, size(a.range) + size(b.range));
+    made.range = {a.range.lo - b.range.hi, a.range.hi - b.range.lo};
+    return made;
+}
+
+Varying size_of(const Varying &a) {
+    return chained({{&a, a.range.lo >= 0   ? one
+                         : a.range.hi <= 0 ? minus_one
+                                           : Interval{-1, 1}}},
+                   0);
+}
+
+// One of several, here this one and there another.
+Varying one_of(const Varying &a, const Varying &b) {
+    Varying made;
+    made.known = a.known && b.known;
+    made.error = std::max(a.error, b.error);
+    for (std::size_t i = 0; i < 3; ++i) made.slope[i] = hull(a.slope[i], b.slope[i]);
+    return made;
+}
+
+Varying negative(const Varying &a) { return chained({{&a, minus_one}}, 0); }
+
+// What kernels of one output give; others are not known.
+Varying through(Kernel kernel, const std::vector<Varying> &in) {
+    const auto differences = [&] {
+        return std::array<Varying, 3>{minus(in[0], in[3]), minus(in[1], in[4]),
+                                      minus(in[2], in[5])};
+    };
+    if (kernel == Kernel::CopyF) return in[0];
+    if (kernel == Kernel::NegF) return negative(in[0]);
+    if (kernel == Kernel::AddF)
+        return chained({{&in[0], one}, {&in[1], one}}, size(in[0].range) + size(in[1].range));
+    if (kernel == Kernel::SubF) return minus(in[0], in[1]);
+    if (kernel == Kernel::MulF) return sum_of_products(in.data(), in.data() + 1, 1);
+    if (kernel == Kernel::DivF) {
+        const Interval by = in[1].range;
+        if (by.lo != by.hi || by.lo == 0 || !in[1].known) return {};
+        return chained({{&in[0], {1 / by.lo, 1 / by.lo}}}, size(in[0].range) / std::fabs(by.lo));
+    }
+    if (kernel == Kernel::MulAdd) {
+        const Varying product = sum_of_products(in.data(), in.data() + 1, 1);
+        return chained({{&product, one}, {&in[2], one}},
+                       size(in[0].range) * size(in[1].range) + size(in[2].range));
+    }
+    if (kernel == Kernel::Dot2) return sum_of_products(in.data(), in.data() + 2, 2);
+    if (kernel == Kernel::Dot3) return sum_of_products(in.data(), in.data() + 3, 3);
+    if (kernel == Kernel::Dot4) return sum_of_products(in.data(), in.data() + 4, 4);
+    if (kernel == Kernel::AbsF) return size_of(in[0]);
+    if (kernel == Kernel::AbsSub) {
+        const Varying whole = size_of(in[0]);
+        return chained({{&whole, one}, {&in[1], minus_one}}, size(in[0].range) + size(in[1].range));
+    }
+    if (kernel == Kernel::SubAbs) return size_of(minus(in[0], in[1]));
+    if (kernel == Kernel::Length2) return length_of(in.data(), 2);
+    if (kernel == Kernel::Length3) return length_of(in.data(), 3);
+    if (kernel == Kernel::Distance3) return length_of(differences().data(), 3);
+    if (kernel == Kernel::Ball) {
+        const Varying length = length_of(differences().data(), 3);
+        return chained({{&length, one}, {&in[6], minus_one}}, size(in[6].range));
+    }
+    if (kernel == Kernel::MinF || kernel == Kernel::MaxF) return one_of(in[0], in[1]);
+    if (kernel == Kernel::MaxNeg) return one_of(in[0], negative(in[1]));
+    return {};
+}
+
+// Slopes by slot: the registers of a tape, and what all points share.
+struct Slopes {
+    const cpu::PruneProgram &parts;
+    const cpu::Shortener &ranges;
+    std::vector<Varying> by_slot;
+
+    bool shared(std::uint32_t address) const { return address < parts.program->first_register; }
+    std::size_t slot(std::uint32_t address) const {
+        const std::size_t first = parts.program->first_register;
+        return address < first ? address : first + (address - first) / cpu::batch_size;
+    }
+    Varying at(std::uint32_t address) const {
+        Varying found = by_slot[slot(address)];
+        if (shared(address)) found = {}, found.known = true;
+        found.range = {ranges.lo[address], ranges.hi[address]};
+        found.known = found.known && std::isfinite(found.range.lo) && std::isfinite(found.range.hi);
+        return found;
+    }
+};
+
+// The axis along which a number changes fastest for sure.
+double least_slope(const Varying &number) {
+    double best = 0;
+    for (const Interval &slope : number.slope)
+        best = std::max(best, inward * std::max(slope.lo, -slope.hi));
+    return best;
+}
+
+} // namespace
+
+std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
+                             const Point &lo, const Point &hi) {
+    constexpr std::size_t longest_tape = 500; // steps
+    const Field &field = evaluator.field;
+    if (tape.steps.size() > longest_tape) return {};
+    boxes.count = 16; // of which one is looked at
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < boxes.count; ++k)
+            boxes.lo[i][k] = lo[i], boxes.hi[i][k] = hi[i];
+    cpu::enter_boxes(field.parts, evaluator.ranges, boxes);
+    Slopes slopes{field.parts, evaluator.ranges, std::vector<Varying>(field.parts.slot_count)};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        Varying &input = slopes.by_slot[slopes.slot(field.program.params[axis].address)];
+        input.known = true;
+        input.slope[axis] = one;
+    }
+    std::vector<Level> levels;
+    std::vector<Varying> in;
+    const cpu::Selection whole = tape.selection(field.parts);
+    std::size_t loops = 0; // before the step at hand: they have rows of their own
+    for (std::size_t k = 0; k < tape.steps.size(); ++k) {
+        const std::uint32_t id = tape.steps[k];
+        const cpu::Step &step = field.parts.table[id];
+        const cpu::Part &part = field.parts.parts[id];
+        const std::uint32_t *operands = field.parts.operands.data() + step.operands;
+        Varying made;
+        const bool plain = step.kind == cpu::StepKind::Run && part.writes == 1 && !step.once;
+        if (plain) {
+            in.clear();
+            for (std::uint32_t n = 1; n < part.operands; ++n) in.push_back(slopes.at(operands[n]));
+            made = through(cpu::kernel_of_variant(step.target), in);
+        }
+        cpu::Selection here = whole;
+        here.steps = whole.steps.subspan(k, 1);
+        here.loops = whole.loops.subspan(loops);
+        loops += step.kind == cpu::StepKind::Loop;
+        cpu::run_steps(field.parts, evaluator.ranges, here);
+        for (std::uint32_t n = 0; n < part.writes; ++n)
+            slopes.by_slot[field.parts.slots[part.first_slot + n]] = {};
+        if (!plain || slopes.shared(operands[0])) continue;
+        slopes.by_slot[slopes.slot(operands[0])] = made;
+        const double slope = made.known ? least_slope(made) : 0;
+        if (!(slope > 0)) continue;
+        Level level{{k, operands[0]},
+                    evaluator.ranges.lo[operands[0]],
+                    evaluator.ranges.hi[operands[0]],
+                    slope,
+                    made.error,
+                    {}};
+        for (std::size_t i = 0; i < 3; ++i)
+            level.gradient[i] = 0.5 * (made.slope[i].lo + made.slope[i].hi);
+        levels.push_back(level);
+    }
+    return levels;
+}
+
+} // namespace fathom::mesh

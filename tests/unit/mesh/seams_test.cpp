@@ -1,0 +1,202 @@
+// Where parts of a solid only touch: gaps and sheets of no width are found, and nothing else is taken
+// for one.
+#include "driver/compile.h"
+#include "mesh/mend.h"
+#include "mesh/seams.h"
+#include "mesh/slopes.h"
+#include "mesh/thin.h"
+#include "tests/support/mesh_checks.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <random>
+
+using namespace fathom;
+
+namespace {
+
+ir::Scene flush_scene(const std::string &text) {
+    const driver::Compilation c = driver::compile_text("mesh.sdf", text, "", {});
+    REQUIRE(c.good());
+    return c.scene;
+}
+
+mesh::Settings fine_cells(int resolution) {
+    mesh::Settings settings;
+    settings.resolution = resolution;
+    return settings;
+}
+
+std::optional<mesh::Seam> seam_in(const std::string &text, const mesh::Point &lo,
+                                  const mesh::Point &hi, bool closely = true) {
+    const mesh::Field field(flush_scene(text), 0, {});
+    mesh::Evaluator evaluator(field);
+    cpu::Boxes boxes;
+    return mesh::seam_in(evaluator, *field.whole, boxes, lo, hi, 2e-7, closely);
+}
+
+} // namespace
+
+TEST_CASE("parts that are flush leave nothing undecided, however they lie") {
+    struct Case {
+        const char *text;
+        double volume;
+        std::size_t components;
+        long genus;
+    };
+    const double pi = 3.14159265358979;
+    for (const auto &[text, volume, components, genus] : std::vector<Case>{
+             {"box(2) - box([1, 1, 2])", 6, 1, 1},
+             {"box(2) - box([1, 1, 1]).translate(z: 0.5)", 7, 1, 0},
+             {"box([0.7, 0.9, 1.1]) - box([0.7, 0.9, 1.1]).translate(x: 0.3)", 0.297, 1, 0},
+             {"box(1) | box(1).translate(x: 1, y: 0.3)", 2, 1, 0},
+             {"(box(2) - box([1, 1, 2])) | box([1, 1, 2])", 8, 1, 0},
+             {"cylinder(2, 0.5) - cylinder(1, 0.5)", 1.5 * pi, 1, 1},
+             {"(cylinder(2, 1) - cylinder(1, 1)) | cylinder(1, 1)", 4 * pi, 1, 0},
+             {"(box(2) - box([1, 1, 2])).rotate(0.3, axis: [1, 2, 3])", 6, 1, 1},
+             {"(box([1, 0.3, 0.2]) | box([1, 0.3, 0.2]).translate(x: 1)).rotate(0.3, axis: [1, 2, "
+              "3])",
+              0.12, 1, 0},
+         }) {
+        INFO(text);
+        const mesh::Mended made = mesh::make_certified_mesh(flush_scene(text), fine_cells(40));
+        REQUIRE(made.made.failure == mesh::Failure::None);
+        CHECK(made.certificate.undecided.empty());
+        CHECK(made.certificate.certified());
+        CHECK(made.certificate.seam_width < 1e-5);
+        CHECK(made.certificate.components == components);
+        CHECK(made.certificate.genus == genus);
+        CHECK(made.certificate.mesh_volume == Approx(volume).epsilon(0.01));
+        CHECK((made.certificate.least_volume <= volume * (1 + 1e-6) &&
+               volume * (1 - 1e-6) <= made.certificate.largest_volume));
+        const test::Survey found = test::survey(made.made.mesh.vertices, made.made.mesh.triangles);
+        CHECK(found.closed());
+        CHECK(test::crossings(made.made.mesh.vertices, made.made.mesh.triangles) == 0);
+    }
+}
+
+TEST_CASE("what only touches in faces makes no mesh, and says why") {
+    CHECK(mesh::make_mesh(flush_scene("box(1) & box(1).translate(x: 1)"), fine_cells(30)).failure ==
+          mesh::Failure::Flat);
+}
+
+TEST_CASE("gaps and sheets of no width are told from those of some") {
+    const mesh::Point lo{0.4f, -0.1f, -0.07f}, hi{0.65f, 0.13f, 0.11f};
+    const auto gap = seam_in("box(1) | box(1).translate(x: 1)", lo, hi);
+    REQUIRE(gap);
+    CHECK((gap->solid && gap->width < 1e-6));
+    const auto sheet = seam_in("box(1) - box([2, 2, 2]).translate(x: -0.5)", lo, hi);
+    REQUIRE(sheet);
+    CHECK((!sheet->solid && sheet->width > 0 && sheet->width < 1e-6));
+    for (const char *text :
+         {"box(1) | box(1).translate(x: 1.0001)", "box(1) | box(1).translate(x: 1.000005)",
+          "box(1) - box([2, 2, 2]).translate(x: -0.5001)",
+          "box([1.00001, 1, 1]) - box([2, 2, 2]).translate(x: -0.5)", "box(1)",
+          "(box(1) | box(1).translate(x: 1.0001)).rotate(0.02, axis: [1, 2, 3])",
+          "(cylinder(2, 1) - cylinder(0.5, 1)) | cylinder(0.4999, 1)"}) {
+        INFO(text);
+        CHECK_FALSE(seam_in(text, lo, hi));
+    }
+}
+
+TEST_CASE("planes that meet in an edge or a corner are found where it is looked closely") {
+    const char *edge = "(box(2) - box([1, 1, 2])) | box([1, 1, 2])";
+    const mesh::Point lo{0.45f, 0.4f, 0.1f}, hi{0.57f, 0.56f, 0.3f};
+    CHECK_FALSE(seam_in(edge, lo, hi, false));
+    const auto seam = seam_in(edge, lo, hi);
+    REQUIRE(seam);
+    CHECK((seam->solid && seam->width < 3e-6));
+    const auto corner =
+        seam_in("(box(2) - box(1)) | box(1)", {0.45f, 0.4f, 0.45f}, {0.57f, 0.56f, 0.6f});
+    REQUIRE(corner);
+    CHECK((corner->solid && corner->width < 3e-6));
+    CHECK_FALSE(
+        seam_in("(box(2) - box(1)) | box(0.999)", {0.45f, 0.4f, 0.45f}, {0.57f, 0.56f, 0.6f}));
+}
+
+TEST_CASE("numbers on the way change at least as fast as is said") {
+    std::size_t seen = 0;
+    for (const char *text : {"box(1).rotate(0.3, axis: [1, 2, 3]) | cylinder(0.3, 2)",
+                             "torus(1, 0.3).translate(x: 0.2) | sphere(0.4)",
+                             "cone(0.5, 1).scale(0.7) - box(0.3).rotate(45deg, axis: Y)"}) {
+        INFO(text);
+        const mesh::Field field(flush_scene(text), 0, {});
+        mesh::Evaluator evaluator(field);
+        cpu::Boxes boxes;
+        std::mt19937 dice(7);
+        std::uniform_real_distribution<float> place(-0.8f, 0.8f), share(0, 1);
+        for (int n = 0; n < 40; ++n) {
+            mesh::Point lo{}, hi{};
+            for (std::size_t i = 0; i < 3; ++i) lo[i] = place(dice), hi[i] = lo[i] + 0.1f;
+            for (const mesh::Level &level :
+                 mesh::levels_in(evaluator, *field.whole, boxes, lo, hi)) {
+                // By boxes that are points, in pairs along the axes.
+                boxes.count = 16;
+                for (std::size_t k = 0; k < 16; ++k)
+                    for (std::size_t i = 0; i < 3; ++i) {
+                        const float at = lo[i] + 0.09f * share(dice);
+                        boxes.lo[i][k] = boxes.hi[i][k] = at;
+                    }
+                bool some = false;
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    std::array<float, 16> before{};
+                    bool all = true;
+                    for (const float step : {0.0f, 0.01f}) {
+                        cpu::Boxes moved = boxes;
+                        for (std::size_t k = 0; k < 16; ++k)
+                            moved.lo[axis][k] = moved.hi[axis][k] = boxes.lo[axis][k] + step;
+                        const std::vector<mesh::Held> held{{level.where, {}}};
+                        cpu::Selection steps = field.whole->selection(field.parts);
+                        steps.steps = steps.steps.subspan(0, level.where.step + 1);
+                        cpu::enter_boxes(field.parts, evaluator.ranges, moved);
+                        cpu::run_steps(field.parts, evaluator.ranges, steps);
+                        for (std::size_t k = 0; k < 16; ++k) {
+                            const float value = evaluator.ranges.lo[level.where.address + k];
+                            if (step == 0)
+                                before[k] = value;
+                            else
+                                all = all && std::fabs(value - before[k]) >=
+                                                 level.slope * 0.0099 - 2 * level.error - 1e-5;
+                            CHECK((value >= level.lo - 1e-5f && value <= level.hi + 1e-5f));
+                        }
+                    }
+                    some = some || all;
+                }
+                CHECK(some);
+                ++seen;
+            }
+        }
+    }
+    CHECK(seen > 100);
+}
+
+TEST_CASE("how thin a wall is is measured, and what touches is seen") {
+    for (const double thickness : {0.05, 0.004, 0.0003}) {
+        const mesh::Field field(
+            flush_scene("sphere(1) - sphere(" + std::to_string(1 - thickness) + ")"), 0, {});
+        mesh::Evaluator evaluator(field);
+        const auto lattice = mesh::make_lattice({{-1, -1, -1}, {1, 1, 1}}, 0.1, 3);
+        REQUIRE(lattice);
+        const mesh::Thin thin = thin_at(evaluator, *lattice, 0.1, {0.58f, 0.55f, 0.59f});
+        CHECK_FALSE(thin.touches);
+        CHECK(thin.thickness == Approx(thickness).epsilon(0.15));
+    }
+    const mesh::Field field(flush_scene("box(1) | box(1).translate(x: 1)"), 0, {});
+    mesh::Evaluator evaluator(field);
+    const auto lattice = mesh::make_lattice({{-1, -1, -1}, {2, 1, 1}}, 0.1, 3);
+    CHECK(thin_at(evaluator, *lattice, 0.1, {0.47f, 0.1f, 0.1f}).touches);
+    CHECK_FALSE(thin_at(evaluator, *lattice, 0.1, {0.1f, 0.1f, 0.1f}).touches);
+}
+
+TEST_CASE("walls thinner than all cells are not drawn as crumbs, but listed") {
+    const mesh::Made made =
+        mesh::make_mesh(flush_scene("sphere(2) - sphere(1.98)"), fine_cells(16));
+    CHECK(made.octree.undecided.size() > 500);
+    CHECK(made.mesh.triangles.size() < 60'000);
+    CHECK(test::survey(made.mesh.vertices, made.mesh.triangles).closed());
+    // One that the finest cells show is drawn, and whole.
+    const mesh::Made shown = mesh::make_mesh(flush_scene("box([4, 4, 0.06])"), fine_cells(16));
+    CHECK(shown.octree.undecided.empty());
+    CHECK(mesh::form_of(shown.mesh).components == 1);
+}
