@@ -1,6 +1,7 @@
 #include "mesh/simplify.h"
 
 #include "mesh/certify.h"
+#include "mesh/collapse.h"
 #include "mesh/exact.h"
 #include "mesh/nearest.h"
 #include "mesh/simplify_checks.h"
@@ -19,8 +20,10 @@ namespace {
 constexpr std::array<double, 3> aims{0.6, 0.3, 0.15};
 // Blocks of so many drawing cells a side, whose borders stay; then others, shifted by half of that.
 constexpr double cells_a_block = 24;
-constexpr std::array<double, 2> pass_shares{0.6, 0.4}; // of the tolerance
-constexpr int most_mendings = 6;                       // of blocks that cross each other, in a pass
+constexpr std::array<double, 2> pass_shares{0.55, 0.35}; // of the tolerance
+constexpr double last_share = 0.1;                       // … for what is done over all blocks
+constexpr int most_last = 4;                             // so often that is tried
+constexpr int most_mendings = 6;       // of blocks that cross each other, in a pass
 constexpr float one_paint = 1.0f / 64; // colours that differ by more are two, with a border between
 constexpr float same_paint = 1.0f / 64; // in each pass
 
@@ -129,20 +132,27 @@ Mesh fewer(const Piece &piece, double error) {
     return mesh;
 }
 
-// Whether no vertex that was left out has another colour than the place of the new mesh next to it.
+// Whether the place of a mesh next to a point that was left out of it has the point's colour.
+// `colors`: by vertex of the mesh.
+bool same_color(const TriangleTree &tree, const Mesh &mesh, const std::vector<Point> &colors,
+                const Point &at, const Point &color, double tolerance) {
+    const auto near = tree.nearest(at, 2 * tolerance);
+    if (!near) return false;
+    Point there{};
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < 3; ++i)
+            there[i] +=
+                static_cast<float>(near->shares[k]) * colors[mesh.triangles[near->triangle][k]][i];
+    return difference(there, color) <= same_paint;
+}
+
 bool same_colors(const Piece &piece, const Mesh &mesh, double tolerance) {
     if (piece.colors.empty()) return true;
     const TriangleTree tree(mesh);
-    for (std::size_t v = 0; v < piece.colors.size(); ++v) {
-        const auto near = tree.nearest(piece.mesh.vertices[v], 2 * tolerance);
-        if (!near) return false;
-        Point color{};
-        for (std::size_t k = 0; k < 3; ++k)
-            for (std::size_t i = 0; i < 3; ++i)
-                color[i] += static_cast<float>(near->shares[k]) *
-                            piece.colors[mesh.triangles[near->triangle][k]][i];
-        if (difference(color, piece.colors[v]) > same_paint) return false;
-    }
+    for (std::size_t v = 0; v < piece.colors.size(); ++v)
+        if (!same_color(tree, mesh, piece.colors, piece.mesh.vertices[v], piece.colors[v],
+                        tolerance))
+            return false;
     return true;
 }
 
@@ -242,6 +252,65 @@ std::size_t run_pass(const Pass &pass, const std::vector<std::uint8_t> &kept, do
     return refused;
 }
 
+// The vertices of the mesh that have to stay, since without them it is another: it crosses itself, is
+// too far, or has another colour. True where there are none.
+bool lock_more(const Mesh &fine, const Mesh &mesh, const Pass &pass, unsigned threads,
+               Progress &progress, std::vector<std::uint8_t> &locked) {
+    bool good = true;
+    std::vector<std::uint32_t> owner(mesh.triangles.size());
+    for (std::uint32_t t = 0; t < owner.size(); ++t) owner[t] = t;
+    for (const auto &[s, t] : crossings_between(mesh, owner, threads, progress)) {
+        good = false;
+        for (const std::uint32_t crossing : {s, t}) {
+            Point lo = mesh.vertices[mesh.triangles[crossing][0]], hi = lo;
+            for (const std::uint32_t v : mesh.triangles[crossing])
+                for (std::size_t i = 0; i < 3; ++i) {
+                    lo[i] = std::min(lo[i], mesh.vertices[v][i]);
+                    hi[i] = std::max(hi[i], mesh.vertices[v][i]);
+                }
+            for (std::size_t v = 0; v < locked.size(); ++v) {
+                bool within = true;
+                for (std::size_t i = 0; i < 3; ++i)
+                    within = within && fine.vertices[v][i] >= lo[i] && fine.vertices[v][i] <= hi[i];
+                if (within) locked[v] = 1;
+            }
+        }
+    }
+    for (const std::uint32_t t : strays_of(fine, mesh, pass.tolerance, threads, progress)) {
+        good = false;
+        for (const std::uint32_t v : fine.triangles[t]) locked[v] = 1;
+    }
+    if (pass.colors.empty()) return good;
+    const TriangleTree tree(mesh);
+    for (const auto &t : fine.triangles)
+        for (const std::uint32_t v : t)
+            if (!locked[v] && !same_color(tree, mesh, pass.colors, fine.vertices[v], pass.colors[v],
+                                          pass.tolerance))
+                good = false, locked[v] = 1;
+    return good;
+}
+
+// What blocks leave along their borders, and wherever faces are flat.
+void finish(const Pass &pass, const std::vector<std::uint8_t> &kept, unsigned threads,
+            Progress &progress, Mesh &result, std::size_t &refused) {
+    std::vector<std::uint8_t> locked(pass.mesh.vertices.size(), 0);
+    for (std::size_t t = 0; t < kept.size(); ++t)
+        for (const std::uint32_t v : pass.mesh.triangles[t])
+            if (kept[t]) locked[v] = 1;
+    for (int time = 0; time < most_last && !progress.cancelled; ++time) {
+        Mesh next;
+        next.vertices = pass.mesh.vertices, next.normals = pass.mesh.normals;
+        next.triangles =
+            collapsed(pass.mesh, locked, pass.colors, same_paint, aims[1] * pass.tolerance);
+        if (lock_more(pass.mesh, next, pass, threads, progress, locked)) {
+            result = std::move(next);
+            return;
+        }
+        ++refused;
+    }
+    result = pass.mesh;
+}
+
 // Vertices that no triangle has go away.
 void compact(Mesh &mesh) {
     std::vector<std::uint32_t> number(mesh.vertices.size(), ~0u);
@@ -304,6 +373,11 @@ Simplified simplify(const Mesh &fine, const Paints &paints, const SimplifySettin
         if (progress.cancelled) break;
         result.mesh = std::move(next);
         kept = std::move(next_kept);
+    }
+    if (!progress.cancelled) {
+        const Mesh blocks = std::move(result.mesh);
+        finish({blocks, paints.colors, last_share * settings.tolerance}, kept, settings.threads,
+               progress, result.mesh, result.refused);
     }
     compact(result.mesh);
     const Form before = form_of(fine), after = form_of(result.mesh);

@@ -141,34 +141,78 @@ class Halves {
     std::vector<Point> middles_;
 };
 
-Real3 middle_of(const Triangle3 &piece) {
-    return along({}, along(along(piece[0], piece[1], 1), piece[2], 1), 1.0 / 3);
+using Polygon = std::vector<Real3>; // convex, and flat but for rounding
+
+// Cuts a polygon at the plane of the points p with n·(p - at) = 0: what lies above it, and the rest.
+std::array<Polygon, 2> cut(const Polygon &polygon, const Real3 &at, const Real3 &n) {
+    std::array<Polygon, 2> parts;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Real3 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+        const double here = inner(n, minus(p, at)), there = inner(n, minus(q, at));
+        parts[here > 0 ? 0 : 1].push_back(p);
+        if ((here > 0) == (there > 0)) continue;
+        const Real3 between = along(p, minus(q, p), here / (here - there));
+        for (Polygon &part : parts) part.push_back(between);
+    }
+    for (Polygon &part : parts)
+        if (part.size() < 3) part.clear();
+    return parts;
 }
 
-// Whether all of a fine triangle is shown to be within the tolerance: its pieces whose three corners
-// are within it of one triangle are so all over, since what is so near to a triangle is convex.
-// Pieces are divided as far as a counted amount of work goes.
+bool within(const Polygon &polygon, const Triangle3 &other, double tolerance) {
+    return std::ranges::all_of(polygon, [&](const Real3 &corner) {
+        return to_triangle(corner, other) * past_rounding <= tolerance;
+    });
+}
+
+// Takes the part of a polygon away that lies over a triangle, if all of it is near enough: what lies
+// beyond its sides goes to `pieces`.
+bool cover(const Polygon &polygon, const Triangle3 &other, double tolerance,
+           std::vector<Polygon> &pieces) {
+    const Real3 n = outer(minus(other[1], other[0]), minus(other[2], other[0]));
+    Polygon over = polygon;
+    std::vector<Polygon> beyond;
+    for (std::size_t k = 0; k < 3 && !over.empty(); ++k) {
+        Real3 out = outer(minus(other[(k + 1) % 3], other[k]), n);
+        const double length = std::sqrt(inner(out, out));
+        if (!(length > 0)) return false;
+        auto parts = cut(over, along(other[k], out, 0.25 * tolerance / length), out);
+        if (!parts[0].empty()) beyond.push_back(std::move(parts[0]));
+        over = std::move(parts[1]);
+    }
+    if (over.empty() || !within(over, other, tolerance)) return false;
+    pieces.insert(pieces.end(), beyond.begin(), beyond.end());
+    return true;
+}
+
+// Whether all of a fine triangle is shown to be within the tolerance: pieces of it whose corners are
+// within it of one triangle are so all over, since what is so near to a triangle is convex. Pieces
+// are cut at the sides of what lies next to their middles, or where that does not do divided by
+// halves, as far as a counted amount of work goes.
 bool is_near(const Triangle3 &whole, const Mesh &mesh, const TriangleTree &tree, double tolerance) {
-    std::vector<Triangle3> pieces{whole};
+    std::vector<Polygon> pieces{{whole[0], whole[1], whole[2]}};
     for (std::size_t count = 0; !pieces.empty(); ++count) {
         if (count == most_pieces) return false;
-        const Triangle3 piece = pieces.back();
+        const Polygon piece = std::move(pieces.back());
         pieces.pop_back();
-        const auto near = tree.nearest(middle_of(piece), tolerance);
+        Real3 middle{};
+        for (const Real3 &corner : piece)
+            middle = along(middle, corner, 1 / static_cast<double>(piece.size()));
+        const auto near = tree.nearest(middle, tolerance);
         if (!near) return false;
         Triangle3 other;
         for (std::size_t k = 0; k < 3; ++k)
             other[k] = real(mesh.vertices[mesh.triangles[near->triangle][k]]);
-        bool within = true;
-        for (const Real3 &corner : piece)
-            within = within && to_triangle(corner, other) * past_rounding <= tolerance;
-        if (within) continue;
-        Triangle3 m; // the middles of its sides
-        for (std::size_t k = 0; k < 3; ++k)
-            for (std::size_t i = 0; i < 3; ++i)
-                m[k][i] = 0.5 * (piece[k][i] + piece[(k + 1) % 3][i]);
-        pieces.push_back(m);
-        for (std::size_t k = 0; k < 3; ++k) pieces.push_back({piece[k], m[k], m[(k + 2) % 3]});
+        if (within(piece, other, tolerance) || cover(piece, other, tolerance, pieces)) continue;
+        for (std::size_t n = 1; n + 1 < piece.size(); ++n) {
+            const Triangle3 part{piece[0], piece[n], piece[n + 1]};
+            Triangle3 m; // the middles of its sides
+            for (std::size_t k = 0; k < 3; ++k)
+                for (std::size_t i = 0; i < 3; ++i)
+                    m[k][i] = 0.5 * (part[k][i] + part[(k + 1) % 3][i]);
+            pieces.push_back({m[0], m[1], m[2]});
+            for (std::size_t k = 0; k < 3; ++k) pieces.push_back({part[k], m[k], m[(k + 2) % 3]});
+        }
     }
     return true;
 }
@@ -299,6 +343,28 @@ bool strays(const Mesh &fine, const Mesh &mesh, double tolerance) {
             {real(fine.vertices[t[0]]), real(fine.vertices[t[1]]), real(fine.vertices[t[2]])}, mesh,
             tree, tolerance);
     });
+}
+
+std::vector<std::uint32_t> strays_of(const Mesh &fine, const Mesh &mesh, double tolerance,
+                                     unsigned threads, Progress &progress) {
+    const TriangleTree tree(mesh);
+    const std::size_t count = fine.triangles.size();
+    std::vector<std::vector<std::uint32_t>> found((count + checks_at_once - 1) / checks_at_once);
+    in_parallel(
+        found.size(), threads, progress, [] { return 0; },
+        [&](int, std::size_t number) {
+            const std::size_t end = std::min(count, (number + 1) * checks_at_once);
+            for (std::size_t k = number * checks_at_once; k < end; ++k) {
+                Triangle3 whole;
+                for (std::size_t c = 0; c < 3; ++c)
+                    whole[c] = real(fine.vertices[fine.triangles[k][c]]);
+                if (!is_near(whole, mesh, tree, tolerance))
+                    found[number].push_back(static_cast<std::uint32_t>(k));
+            }
+        });
+    std::vector<std::uint32_t> all;
+    for (const auto &some : found) all.insert(all.end(), some.begin(), some.end());
+    return all;
 }
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>>

@@ -22,6 +22,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>>
 crossings_between(const Mesh &mesh, const std::vector<std::uint32_t> &owner, unsigned threads,
                   Progress &progress);
 
+// The triangles of the fine mesh with a point that is not shown to be within the tolerance of the other.
+std::vector<std::uint32_t> strays_of(const Mesh &fine, const Mesh &mesh, double tolerance,
+                                     unsigned threads, Progress &progress);
 // Whether some point of the fine piece is not shown to be within the tolerance of the other.
 bool strays(const Mesh &fine, const Mesh &mesh, double tolerance);
 

@@ -64,6 +64,21 @@ TEST_CASE("flat faces take few triangles, and what comes of it is a mesh like th
     }
 }
 
+TEST_CASE("a box comes down to its twelve triangles, a plate with a hole to few") {
+    const auto count = [](const std::string &text, double share) {
+        const Fewer f = fewer(text, 64, share);
+        CHECK_FALSE(f.simplified.undone);
+        CHECK(test::survey(f.simplified.mesh.vertices, f.simplified.mesh.triangles).closed());
+        return f.simplified.mesh.triangles.size();
+    };
+    for (const double share : {0.05, 0.5}) {
+        CHECK(count("box([2, 1, 1.5])", share) <= 16);
+        CHECK(count("box(1).rotate(0.4, axis: [1, 2, 3])", share) <= (share < 0.1 ? 800 : 100));
+    }
+    CHECK(count("box(2) - box([1, 1, 2])", 0.5) <= 60);
+    CHECK(count("box([2, 1, 1.5]) - cylinder(0.3, 3)", 0.5) < 400);
+}
+
 TEST_CASE("a simplified mesh has a certificate of its own") {
     Fewer f = fewer("box(1) - sphere(0.62)", 40, 0.25);
     f.made.mesh = f.simplified.mesh;
