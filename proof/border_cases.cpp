@@ -16,8 +16,9 @@ namespace {
 
 constexpr int max_cases = 600, max_forks = 40;
 constexpr double rounding_of_squares = 1e-12; // what double precision loses
-constexpr double rounding_of_terms = 2e-8;    // what numbers of 9 digits lose (cases.cpp)
-constexpr double granted_to_terms = 5e-7;     // as in cases.cpp
+constexpr double rounding_of_terms = 1e-12;   // what is lost of terms on the way (cases.cpp)
+constexpr double granted_to_sides = 5e-7; // as in all that float32 evaluates: constants are floats
+constexpr double granted_to_unknown = 1e-12; // beside what may have any size
 
 } // namespace
 
@@ -137,36 +138,68 @@ std::optional<bool> Cases::vectors_agree(int sides) {
 }
 
 bool Cases::are_equal(const Sum &a, const Sum &b) {
-    const Sum gap = cleared(add(a, b, -1));
-    if (is_rounding(gap, a, b)) return true;
-    if (impossible(case_, {gap, true}) && impossible(case_, {add({}, gap, -1), true})) return true;
+    const Sum apart = add(a, b, -1), gap = cleared(apart);
+    if (gap.empty() || is_rounding(apart, a, b)) return true;
+    const auto number = [](const Sum &sum) {
+        const auto it = sum.find({});
+        return it == sum.end() ? 0 : std::min(std::fabs(it->second), most_size_at(0));
+    };
+    const double slack = gap == apart ? granted_to_sides * std::min(number(a), number(b)) : 0;
+    if (impossible(case_, {gap, true, slack}) && impossible(case_, {add({}, gap, -1), true, slack}))
+        return true;
     return split_sizes_ && are_equal_on_line(a, b);
 }
 
-// Coordinates, and what is as large as these, may be rounding beside each other; what may itself be
-// large where its factor is small is no more than rounding beside its own two terms.
-bool Cases::is_rounding(const Sum &gap, const Sum &a, const Sum &b) const {
-    Sum of_coordinates;
-    for (const auto &[m, c] : gap) {
-        const bool large =
-            std::ranges::any_of(m, [&](std::uint32_t i) { return atoms_[i].may_be_large; });
-        if (!large) {
-            of_coordinates[m] = c;
-            continue;
+std::optional<Interval> Cases::range_near(std::uint32_t a, Enclosed &box, double distance) const {
+    const Atom &atom = atoms_[a];
+    const auto of_sum = [&](const Sum &sum) -> std::optional<Interval> {
+        Interval out;
+        for (const auto &[m, c] : sum) {
+            Interval term = c;
+            for (std::size_t i = 0; i < m.size(); ++i) {
+                const auto one = range_near(m[i], box, distance);
+                if (!one) return {};
+                const bool twice = i + 1 < m.size() && m[i] == m[i + 1];
+                term = term * (twice ? square(*one) : *one);
+                i += twice;
+            }
+            out += term;
         }
-        const auto x = a.find(m), y = b.find(m);
-        const double own =
-            (x == a.end() ? 0 : std::fabs(x->second)) + (y == b.end() ? 0 : std::fabs(y->second));
-        if (std::fabs(c) > granted_to_terms * own) return false;
-    }
-    const auto without_large = [&](Sum sum) {
-        std::erase_if(sum, [&](const auto &term) {
-            return std::ranges::any_of(term.first,
-                                       [&](std::uint32_t i) { return atoms_[i].may_be_large; });
-        });
-        return sum;
+        return out;
     };
-    return is_small(of_coordinates, without_large(a)) || is_small(of_coordinates, without_large(b));
+    if (coordinates_.contains(a)) return Interval(-distance, distance);
+    if (atom.below) {
+        const auto below = of_sum(*atom.below);
+        return below ? std::optional(sqrt(*below)) : std::nullopt;
+    }
+    if (atom.square) {
+        const auto square = of_sum(*atom.square);
+        return square ? std::optional(sqrt(*square)) : std::nullopt;
+    }
+    if (atom.range) return atom.range;
+    const auto node = nodes_.find(a);
+    if (node == nodes_.end()) return {};
+    const Interval range = box.of(node->second.first, node->second.second);
+    return range.finite() ? std::optional(range) : std::nullopt;
+}
+
+// Beside both sides, at all distances from the origin, or from where the claim's parts lie.
+bool Cases::is_rounding(const Sum &gap, const Sum &a, const Sum &b) {
+    for (int scale = least_scale; scale <= far_scale; ++scale) {
+        looked_.take(64 * (gap.size() + a.size() + b.size()));
+        const double distance = distance_at(scale);
+        std::array<Interval, 3> box;
+        for (std::size_t i = 0; i < 3; ++i)
+            box[i] = (axes_ ? axes_->origin[i] : 0) + Interval(-2 * distance, 2 * distance);
+        Enclosed enclosed(graph_, looked_.ranges, box);
+        const auto factor = [&](std::uint32_t f) {
+            return KnownFactor{range_near(f, enclosed, distance), atoms_[f].held};
+        };
+        if (!is_rounding_beside(gap, a, b, granted_to_sides, granted_to_unknown,
+                                most_size_at(distance), factor))
+            return false;
+    }
+    return true;
 }
 
 bool Cases::are_equal_on_line(const Sum &a, const Sum &b) {

@@ -4,12 +4,14 @@
 
 #include "proof/border_cases.h"
 #include "proof/cases.h"
+#include "proof/enclosed.h"
 #include "proof/on_line.h"
 #include "proof/tape.h"
 
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -87,6 +89,8 @@ class Cases {
     std::map<std::pair<NodeId, NodeId>, bool> reads_;
     std::map<AtomKey, std::uint32_t> index_;
     std::vector<Atom> atoms_;
+    std::set<std::uint32_t> coordinates_;                   // atoms that are coordinates
+    std::map<std::uint32_t, std::pair<NodeId, int>> nodes_; // atoms that are a node's component
     std::map<NodeId, Relation> relations_;
     int count_ = 0, depth_ = 0, squares_ = 0, roots_ = 0, lines_ = 0;
     bool alike_ = false; // as of hold_alike
@@ -110,7 +114,9 @@ class Cases {
     bool is_of_border(NodeId id); // reads a number, no coordinate, that u or v reads
 
     bool are_equal(const Sum &a, const Sum &b);
-    bool is_rounding(const Sum &gap, const Sum &a, const Sum &b) const; // gap = a - b
+    bool is_rounding(const Sum &gap, const Sum &a, const Sum &b); // gap = a - b
+    // Of an atom that is no further from the axes' origin than this; `box` has the points there.
+    std::optional<Interval> range_near(std::uint32_t a, Enclosed &box, double distance) const;
 
     // Where all that is left hangs on one number.
     bool are_equal_on_line(const Sum &a, const Sum &b);

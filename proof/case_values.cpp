@@ -44,8 +44,11 @@ Sum Cases::leaf(NodeId id, int i) {
         if (near) about.range = Interval(-2.5 * reach, 2.5 * reach); // sqrt(3) times it, the origin
         const auto k = static_cast<std::size_t>(i);
         Sum out = constant(axes_->origin[k]);
-        for (std::size_t j = 0; j < 3; ++j)
-            out = add(out, atom(atom_of({-4.0, double(j)}, about)), axes_->along[j][k]);
+        for (std::size_t j = 0; j < 3; ++j) {
+            const std::uint32_t a = atom_of({-4.0, double(j)}, about);
+            coordinates_.insert(a);
+            out = add(out, atom(a), axes_->along[j][k]);
+        }
         return reduced(out, case_);
     }
     const ir::Node node = graph_[id];
@@ -59,7 +62,9 @@ Sum Cases::leaf(NodeId id, int i) {
     if (node.op == Op::Time && looked_.ranges) about.range = looked_.ranges->time;
     if (about.range && !about.range->finite()) about.range.reset();
     if (about.held && about.range) about.never_negative = about.range->lo >= 0;
-    return reduced(atom(atom_of({-1.0, double(id.index), double(i)}, about)), case_);
+    const std::uint32_t a = atom_of({-1.0, double(id.index), double(i)}, about);
+    if (node.op == Op::Point) coordinates_.insert(a);
+    return reduced(atom(a), case_);
 }
 
 std::optional<Sum> Cases::unknown(NodeId id, int i) {
@@ -81,7 +86,6 @@ std::optional<Sum> Cases::unknown(NodeId id, int i) {
     }
     Atom about;
     about.never_negative = node.op == Op::Exp || node.op == Op::Exp2 || node.op == Op::Hash;
-    about.may_be_large = may_be_large[node.op];
     if (const auto angle = node.op == Op::MatMul ? sector_of(id) : std::nullopt) {
         AtomKey point = key;
         point.front() = -7.0, point[3] = 0;
@@ -90,7 +94,9 @@ std::optional<Sum> Cases::unknown(NodeId id, int i) {
     }
     const ir::Graph::Reads read = graph_.reads(id);
     about.held = !read.point && !read.free_vars;
-    return atom(atom_of(std::move(key), about));
+    const std::uint32_t a = atom_of(std::move(key), about);
+    nodes_.try_emplace(a, id, i);
+    return atom(a);
 }
 
 bool Cases::are_opposite(NodeId a, NodeId b) const {
@@ -423,6 +429,7 @@ std::optional<Sum> Cases::component(NodeId id, int i, Op op, const Sum &a, const
         return low ? lesser(id, Upper + i, *low, c, true) : std::nullopt;
     }
     if (op == Op::Mix) {
+        if (const auto t = as_constant(c); t && (*t == 0 || *t == 1)) return *t == 0 ? a : b;
         const auto by = times(c, add(b, a, -1));
         return by ? std::optional(add(a, *by)) : std::nullopt;
     }

@@ -1,7 +1,9 @@
-// Numbers are doubles, made of constants that are floats or written with few digits (0.57735 for
-// the root of a third): what is less than `granted` of the terms that it is the sum of is 0, as in
-// all that float32 evaluates (docs/lipschitz.md, 2, Rounding).
+// Numbers are doubles. A term is left out where it is what double precision loses of its own summands
+// alone: how large it is beside other terms hangs on what it multiplies, and is asked once, where a
+// proof ends (enclosed.h).
 #include "proof/cases.h"
+
+#include "proof/enclosed.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,15 +12,26 @@
 namespace fathom::proof {
 namespace {
 
-// written: what is left where numbers of 9 digits cancel; single precision has 7 of them
-constexpr double rounding_of_cases = 1e-11, written = 5e-9, granted = 5e-7;
+// granted: constants are floats, and people write 0.57735; lost_of_rows: of sums of many sums
+constexpr double granted = 5e-7, lost_of_rows = 1e-12;
+// written: what is left where numbers of 9 digits cancel; most_shift: … of coordinates that they are
+// taken off, whatever they are
+constexpr double written = 5e-9, most_shift = 2e-9;
 // a root turns an error e into sqrt(e)
-constexpr double granted_to_squares = 1e-10;
+constexpr double lost_of_squares = 1e-11, granted_to_squares = 1e-10;
 constexpr std::size_t max_terms_of_cases = 60, max_degree_of_cases = 8, max_inequalities = 160;
 
-void drop_rounding(Sum &a, double size) {
-    for (auto it = a.begin(); it != a.end();)
-        it = std::fabs(it->second) <= rounding_of_cases * size ? a.erase(it) : std::next(it);
+// Of a sum whose terms are added up from terms of these sizes.
+void drop_rounding(Sum &a, const Sum &sizes, double lost) {
+    std::erase_if(a, [&](const auto &term) {
+        const auto size = sizes.find(term.first);
+        return std::fabs(term.second) <= (size == sizes.end() ? 0 : lost * size->second);
+    });
+}
+double slope(const Sum &a) { // the largest number that something stands beside
+    double out = 0;
+    for (const auto &[m, c] : a) out = std::max(out, m.empty() ? 0 : std::fabs(c));
+    return out;
 }
 double largest(const Sum &a) {
     double out = 0;
@@ -30,11 +43,19 @@ double largest(const Sum &a) {
 Inequality without(const Inequality &low, const Inequality &high, const Product &m) {
     const double a = low.sum.at(m), b = -high.sum.at(m); // both above 0
     Inequality out{{}, low.strict || high.strict};
-    for (const auto &[k, c] : low.sum) out.sum[k] += c * b;
-    for (const auto &[k, c] : high.sum) out.sum[k] += c * a;
+    Sum sizes;
+    const auto take = [&](const Sum &sum, double by) {
+        for (const auto &[k, c] : sum) {
+            out.sum[k] += c * by;
+            sizes[k] += std::fabs(c * by);
+        }
+    };
+    take(low.sum, b);
+    take(high.sum, a);
     out.sum.erase(m);
     out.size = low.size * b + high.size * a;
-    drop_rounding(out.sum, a + b);
+    out.slack = low.slack * b + high.slack * a;
+    drop_rounding(out.sum, sizes, lost_of_rows);
     return out;
 }
 
@@ -46,12 +67,11 @@ void normalize(Inequality &row) {
     const double size = largest(row.sum);
     if (!is_number(row))
         for (auto &[m, c] : row.sum) c /= size;
-    if (!is_number(row)) row.size /= size;
+    if (!is_number(row)) row.size /= size, row.slack /= size;
 }
 bool is_false(const Inequality &row) {
     const double c = row.sum.empty() ? 0 : row.sum.begin()->second;
-    const double nothing = granted * row.size;
-    return row.strict ? c <= nothing : c < -nothing;
+    return row.strict ? c <= row.slack + lost_of_rows * row.size : c < -granted * row.size;
 }
 
 } // namespace
@@ -61,26 +81,32 @@ Sum atom(std::uint32_t a) { return Sum{{{a}, 1.0}}; }
 
 Sum add(const Sum &a, const Sum &b, double times) {
     Sum out = a;
+    bool shifts = false;
     for (const auto &[m, c] : b) {
         double &to = out[m];
         const double size = std::fabs(to) + std::fabs(times * c);
         to += times * c;
-        if (std::fabs(to) <= written * size) out.erase(m);
+        shifts = shifts || (m.empty() && std::fabs(to) <= written * size);
+        if (std::fabs(to) <= lost_by_doubles * size) out.erase(m);
     }
+    // a corner whose coordinates are written with 9 digits
+    if (shifts && out.contains({}) && std::fabs(out[{}]) <= most_shift * std::min(1.0, slope(out)))
+        out.erase(Product{});
     return out;
 }
 
 std::optional<Sum> multiply(const Sum &a, const Sum &b) {
-    Sum out;
+    Sum out, sizes;
     for (const auto &[m, x] : a)
         for (const auto &[k, y] : b) {
             Product product = m;
             product.insert(product.end(), k.begin(), k.end());
             std::sort(product.begin(), product.end());
             out[product] += x * y;
+            sizes[product] += std::fabs(x * y);
             if (product.size() > max_degree_of_cases || out.size() > max_terms_of_cases) return {};
         }
-    drop_rounding(out, largest(a) * largest(b));
+    drop_rounding(out, sizes, lost_by_doubles);
     return out;
 }
 
@@ -110,14 +136,16 @@ std::optional<Sum> root_of_square(const Sum &a) {
         if (lead[i] != lead[i + 1]) return {};
         half.push_back(lead[i]);
     }
-    const double size = largest(a), first = std::sqrt(c);
+    const double first = std::sqrt(c);
     Sum root{{half, first}};
     for (int round = 0; round < 12; ++round) {
         const auto square = multiply(root, root);
         if (!square) return {};
-        Sum rest = a;
+        Sum rest = a, sizes;
         for (const auto &[m, x] : *square) rest[m] -= x;
-        drop_rounding(rest, 4 * size); // a root turns an error e into sqrt(e)
+        for (const auto &[m, x] : rest) sizes[m] = std::fabs(x);
+        for (const auto &[m, x] : *square) sizes[m] += 2 * std::fabs(x);
+        drop_rounding(rest, sizes, lost_of_squares);
         if (rest.empty()) return root;
         const auto &[m, x] = *rest.begin();
         Product term;

@@ -25,7 +25,7 @@ Sum atom(std::uint32_t a);
 Sum add(const Sum &a, const Sum &b, double times = 1);   // a + times*b
 std::optional<Sum> multiply(const Sum &a, const Sum &b); // nothing where it would be very large
 bool is_small(const Sum &a, const Sum &beside);          // term by term no more than float32
-    // rounding of the terms of that degree in `beside`
+    // rounding of the terms of that degree in `beside`: to choose what is solved for
 std::optional<double> as_constant(const Sum &a);
 // s with s*s = a, or nothing. Its sign is either.
 std::optional<Sum> root_of_square(const Sum &a);
@@ -55,7 +55,8 @@ void add_to_key(std::vector<double> &key, const Sum &sum);
 struct Inequality {
     Sum sum;
     bool strict = false;
-    double size = 0; // of the numbers that its own number is the sum of
+    double slack = 0; // of a strict one: what the sum may be above 0 and count as 0
+    double size = 0;  // of the numbers that its own number is the sum of
 };
 // Is there certainly no point at which all hold? Products are taken for numbers of their own, of
 // which `never_negative` are at least 0: true is a proof (of Fourier and Motzkin), false is none.

@@ -3,6 +3,7 @@
 #include "proof/continuity.h"
 
 #include "ir/passes/walk.h"
+#include "proof/enclosed.h"
 #include "proof/exact.h"
 #include "proof/polynomials.h"
 
@@ -21,27 +22,30 @@ namespace fathom::proof {
 // relative size.
 constexpr double rounding = 1e-12;
 
-// Is what is left of two polynomials no more than their rounding? Of products of coordinates, beside
-// their largest term; not without end: beside 1e13 y^8 a jump by 5 is one. What may itself be large
-// where its factor is small, as 1e-13 exp(30 + z), counts beside its own two terms.
+// Is what is left of two polynomials no more than their rounding, at all distances from the origin?
 bool is_rounding(const Graph &graph, const Polynomial &rest, const Polynomial &p,
                  const Polynomial &q) {
-    constexpr std::size_t most_factors = 4;
-    double size = 0;
-    for (const auto &[m, c] : p) size = std::max(size, std::fabs(c));
     const auto of = [](const Polynomial &sum, const Monomial &m) {
         const auto it = sum.find(m);
         return it == sum.end() ? 0 : std::fabs(it->second);
     };
-    const double granted = rounding * std::clamp(size, 1e-30, 1e3);
-    return std::ranges::all_of(rest, [&](const auto &term) {
-        const auto &[m, c] = term;
-        const bool large = m.size() > most_factors || std::ranges::any_of(m, [&](NodeId f) {
-                               return may_be_large[graph[f].op];
-                           });
-        // inf - inf is no number, and not 0
-        return std::fabs(c) <= (large ? rounding * (of(p, m) + of(q, m)) : granted);
+    const bool is_nothing = std::ranges::all_of(rest, [&](const auto &term) {
+        const auto &[m, c] = term; // inf - inf is no number, and not 0
+        return std::fabs(c) <= lost_by_doubles * (of(p, m) + of(q, m));
     });
+    if (is_nothing) return true;
+    for (int scale = least_scale; scale <= far_scale; ++scale) {
+        const double distance = distance_at(scale);
+        const Interval side(-distance, distance);
+        Enclosed enclosed(graph, nullptr, {side, side, side});
+        const auto factor = [&](NodeId f) {
+            const Interval range = enclosed.of(f);
+            return KnownFactor{range.finite() ? std::optional(range) : std::nullopt};
+        };
+        if (!is_rounding_beside(rest, p, q, rounding, rounding, most_size_at(distance), factor))
+            return false;
+    }
+    return true;
 }
 
 bool same(Graph &graph, NodeId a, NodeId b, Work *work) {

@@ -19,9 +19,6 @@ bool arms_agree(ir::Graph &graph, ir::NodeId condition, ir::NodeId a, ir::NodeId
 ir::NodeId component_of(ir::Graph &graph, ir::NodeId vector, int i);
 // One entry of a matrix that is a constant, or made of scalars or of columns; else nothing.
 std::optional<ir::NodeId> entry_of(ir::Graph &graph, ir::NodeId matrix, int row, int column);
-// What may be large by itself, so that a small factor before it does not make it rounding.
-constexpr ir::OpSet may_be_large{ir::Op::Exp,  ir::Op::Exp2, ir::Op::Pow, ir::Op::Div,
-                                 ir::Op::Sinh, ir::Op::Cosh, ir::Op::Tan};
 // The same number as a sum of products: equal sums become one node.
 ir::NodeId in_one_form(ir::Graph &graph, ir::NodeId scalar, Work *work = nullptr);
 // … without what is no more than rounding beside its other terms: for comparing.

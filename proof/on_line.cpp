@@ -1,5 +1,7 @@
 #include "proof/on_line.h"
 
+#include "proof/enclosed.h"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -90,6 +92,15 @@ std::optional<std::uint32_t> the_one(const std::set<std::uint32_t> &used,
     return {};
 }
 
+// What the lesser of both is at most up to the cell's distance from 0: their terms may be far larger.
+double size_near(const Interval &cell, const Sum &a, const Sum &b,
+                 const std::vector<LineAtom> &atoms, std::uint32_t t) {
+    const double distance = std::max(cell.magnitude(), distance_at(least_scale));
+    Line line{atoms, t, {{t, Interval(-distance, distance)}}};
+    const double least = std::min(line.of(a).magnitude(), line.of(b).magnitude());
+    return std::min(least, most_size_at(cell.mignitude()));
+}
+
 } // namespace
 
 bool agree_on_line(const std::vector<Sum> &rows, const Sum &a, const Sum &b,
@@ -112,9 +123,12 @@ bool agree_on_line(const std::vector<Sum> &rows, const Sum &a, const Sum &b,
             return line.of(row).hi < -granted_to_rows * line.greatest(row);
         });
         if (excluded) continue;
-        const double granted = granted_on_lines * (line.size(a) + line.size(b));
-        if (!std::isfinite(granted)) return false;
-        if (line.of(gap).magnitude() <= granted) continue;
+        const double terms = line.size(a) + line.size(b);
+        if (!std::isfinite(terms)) return false;
+        const double apart = line.of(gap).magnitude();
+        if (apart <= lost_by_doubles * terms ||
+            apart <= granted_on_lines * std::min(terms, size_near(cell, a, b, atoms, *t)))
+            continue;
         const double middle = cell.middle();
         Line at{atoms, *t, {{*t, Interval(middle)}}};
         const bool holds = std::all_of(rows.begin(), rows.end(),

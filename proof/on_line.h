@@ -25,7 +25,6 @@ struct LineAtom {
     std::optional<Sum> below;          // … which, if it may be below 0, counts as 0 there
     std::optional<ir::Interval> range; // of its own, where it is known
     bool held = false;                 // the same for all points: a param, the time, made of these
-    bool may_be_large = false;         // as exp and powers, whatever the factor before it is
     // Of a / d, where d is an atom: d, and a.
     std::optional<std::pair<std::uint32_t, Sum>> quotient;
     std::optional<Sum> inverse_of; // of 1 / b: b, of which the first number is 1, never 0
