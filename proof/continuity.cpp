@@ -29,8 +29,10 @@ bool is_rounding(const Graph &graph, const Polynomial &rest, const Polynomial &p
         const auto it = sum.find(m);
         return it == sum.end() ? 0 : std::fabs(it->second);
     };
+    const auto is_finite = [](const auto &term) { return std::isfinite(term.second); };
+    if (!std::ranges::all_of(rest, is_finite)) return false; // inf - inf is no number, and not 0
     const bool is_nothing = std::ranges::all_of(rest, [&](const auto &term) {
-        const auto &[m, c] = term; // inf - inf is no number, and not 0
+        const auto &[m, c] = term;
         return std::fabs(c) <= lost_by_doubles * (of(p, m) + of(q, m));
     });
     if (is_nothing) return true;

@@ -107,7 +107,7 @@ bool is_rounding_beside(const Sum &gap, const Sum &a, const Sum &b, double grant
         const double most =
             std::max((all_known ? granted : granted_else) * std::min(beside, most_size),
                      lost_by_doubles * terms);
-        return part.gap.sum.magnitude() <= most; // inf - inf is no number, and not 0
+        return part.gap.sum.magnitude() <= most && std::isfinite(most); // inf - inf is no number
     });
 }
 
