@@ -64,8 +64,9 @@ struct Diagnostic {
     Diagnostic &help(std::string text, std::vector<Edit> edits = {}) &;
 };
 
-// Collects; drops exact repeats (same code, place and message); keeps at most `limit` of them and
-// counts the rest, so that a hostile file cannot fill the memory.
+// Collects; drops exact repeats (same code, place and message); cuts every text to 2,000 bytes,
+// keeps at most 200 of them and 1 MiB, and counts the rest, so that a hostile file cannot fill the
+// memory.
 class Diagnostics {
   public:
     // Adds one with the code's own severity and hands it back to be refined at once; the reference

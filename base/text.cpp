@@ -127,4 +127,25 @@ std::string_view cut(std::string_view text, std::size_t bytes) {
     return text.substr(0, bytes);
 }
 
+namespace {
+
+constexpr std::string_view ellipsis = "…";
+
+} // namespace
+
+std::string shortened(std::string_view text, std::size_t bytes) {
+    if (text.size() <= bytes) return std::string(text);
+    if (bytes < ellipsis.size()) return "";
+    return std::string(cut(text, bytes - ellipsis.size())).append(ellipsis);
+}
+
+std::string short_name(std::string_view name) {
+    constexpr std::size_t most = 80;
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < most && end < name.size(); ++i)
+        end += decode_utf8(name, end).length;
+    std::string text(name.substr(0, end));
+    return end < name.size() ? text.append(ellipsis) : text;
+}
+
 } // namespace fathom

@@ -30,5 +30,9 @@ int display_width(std::uint32_t code_point);
 
 // The text, or as much of its begin as fits into so many bytes without a part of a code point.
 std::string_view cut(std::string_view text, std::size_t bytes);
+// The same with `…` behind it where something is left out, in no more than so many bytes.
+std::string shortened(std::string_view text, std::size_t bytes);
+// A name of the user's as a message quotes it: its first 80 code points, `…` for what follows.
+std::string short_name(std::string_view name);
 
 } // namespace fathom

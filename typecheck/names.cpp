@@ -2,6 +2,7 @@
 #include "typecheck/remedies.h"
 
 #include "base/suggest.h"
+#include "base/text.h"
 
 #include <fmt/format.h>
 
@@ -155,8 +156,8 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string
                          Span place) {
     const std::string near = likely_name(ev, frame, name);
     if (lacking(ev, name, near)) return; // one cause, one report
-    Diagnostic &d =
-        report(ev, Code::UnknownName, place, fmt::format("nothing here is called `{}`", name));
+    Diagnostic &d = report(ev, Code::UnknownName, place,
+                           fmt::format("nothing here is called `{}`", short_name(name)));
     if (ev.in_field == 0 && (name == "p" || name == "pos" || name == "uv")) {
         d.help("the point is the argument of a function: `implicit(p => length(p) - 1)`");
         return;

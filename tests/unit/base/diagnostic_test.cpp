@@ -172,3 +172,41 @@ TEST_CASE("sorted by place") {
     f.diagnostics.add(Code::SyntaxError, {f.id, 0, 1}, "a");
     CHECK(f.diagnostics.sorted()[0].message == "a");
 }
+
+TEST_CASE("what is said is cut, each text and all together") {
+    Fixture f("abc\n");
+    const std::string much(8 << 20, 'x');
+    const auto at = [&](std::uint32_t i) { return Span{f.id, i % 3, i % 3 + 1}; };
+    const auto check_text = [](const std::string &text) {
+        CHECK(text.size() == 2000);
+        CHECK(text.ends_with("x…"));
+    };
+    f.diagnostics.add(Code::Printed, at(0), much)
+        .label(at(1), much)
+        .note(much)
+        .help(much, {{at(0), much}});
+    Diagnostic whole = f.diagnostics.items()[0];
+    check_text(whole.message);
+    check_text(whole.related[0].message);
+    check_text(whole.notes[0]);
+    check_text(whole.fix->message);
+    CHECK(whole.fix->edits.empty()); // half an edit would be wrong
+    // … also of one that was made elsewhere
+    whole.message = whole.notes[0] = whole.primary.message = "y" + much;
+    f.diagnostics.add(whole);
+    check_text(f.diagnostics.items()[1].message);
+    check_text(f.diagnostics.items()[1].primary.message);
+    check_text(f.diagnostics.items()[1].notes[0]);
+
+    std::size_t bytes = 0;
+    for (std::uint32_t i = 0; i < 190; ++i) {
+        Diagnostic &d = f.diagnostics.add(Code::Printed, at(i), std::to_string(i));
+        for (int note = 0; note < 20; ++note) d.note(much);
+    }
+    for (const Diagnostic &d : f.diagnostics.items())
+        for (const std::string &note : d.notes) bytes += note.size();
+    CHECK(bytes < (std::size_t{1} << 20) + 50'000);
+    CHECK(f.diagnostics.dropped() > 100);
+    f.diagnostics.add(Code::UnknownName, at(0), "an error takes a remark's place");
+    CHECK(f.diagnostics.items().back().code == Code::UnknownName);
+}

@@ -48,6 +48,14 @@ TEST_CASE("columns of code points, and texts cut between them") {
     CHECK(cut("a漢c", 3) == "a");
     CHECK(cut("漢", 2) == "");
     CHECK(cut("\x80\x80", 1) == "");
+    CHECK(shortened("abcdef", 6) == "abcdef");
+    CHECK(shortened("abcdefg", 6) == "abc…");
+    CHECK(shortened("a漢c漢", 6) == "a…");
+    CHECK(shortened("abc", 2) == "");
+    std::string name;
+    for (int i = 0; i < 80; ++i) name += "漢";
+    CHECK(short_name(name) == name);
+    CHECK(short_name(name + "x") == name + "…");
 }
 
 TEST_CASE("positions count lines and code points from 1") {
