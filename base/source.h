@@ -14,6 +14,12 @@ namespace fathom {
 struct Source;
 using SourceId = Id<Source>;
 
+// A place in a long line, so that a column is found without reading the line from its begin.
+struct Milestone {
+    std::uint32_t offset = 0; // where a code point begins
+    std::uint32_t column = 0; // of it, from 1
+};
+
 // A text with its name and the offsets of its lines.
 struct Source {
     std::string
@@ -21,6 +27,7 @@ struct Source {
     std::string text;                       // UTF-8, as read
     std::vector<std::uint32_t> line_starts; // byte offsets; filled by Sources::add
     SourceId made_from; // the source that was imported as this text, which then is no file itself
+    std::vector<Milestone> milestones; // every 256 bytes of a line that is longer; by offset
 };
 
 // Bytes [begin, end) of one source.
@@ -52,7 +59,8 @@ class Sources {
     Arena<Source> sources_;
 };
 
-// Line and column, from 1, of a byte offset.
+// Line and column, from 1, of a byte offset. Takes the logarithm of the text's length, however long
+// its lines are.
 Position position(const Source &source, std::uint32_t offset);
 std::string_view line_text(const Source &source, std::uint32_t line); // without its line end
 // The text that a span covers.

@@ -34,22 +34,40 @@ std::size_t offset_at(std::string_view text, Position position) {
 }
 
 Lines lines_of(std::string_view text) {
+    constexpr std::size_t between_milestones = 256;
     Lines lines{text};
-    for (std::size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + 1))
-        lines.begins.push_back(at + 1);
-    return lines;
+    for (std::size_t begin = 0;;) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        std::size_t last = begin;
+        int character = 0;
+        for (std::size_t at = begin; end - begin > between_milestones && at < end;) {
+            if (at - last >= between_milestones) {
+                lines.milestones.push_back({at, character});
+                last = at;
+            }
+            const std::size_t length = length_at(text, at);
+            character += units(length);
+            at += length;
+        }
+        if (end == text.size()) return lines;
+        begin = end + 1;
+        lines.begins.push_back(begin);
+    }
 }
 
 Position position_at(const Lines &lines, std::size_t offset) {
     offset = std::min(offset, lines.text.size());
     const auto next = std::ranges::upper_bound(lines.begins, offset);
-    Position position{static_cast<int>(next - lines.begins.begin()) - 1, 0};
-    for (std::size_t at = *std::prev(next); at < offset;) {
-        const std::size_t length = length_at(lines.text, at);
-        position.character += units(length);
-        at += length;
+    Milestone from{*std::prev(next), 0};
+    const auto further = std::ranges::upper_bound(lines.milestones, offset, {}, &Milestone::offset);
+    if (further != lines.milestones.begin() && std::prev(further)->offset > from.offset)
+        from = *std::prev(further);
+    while (from.offset < offset) {
+        const std::size_t length = length_at(lines.text, from.offset);
+        from.character += units(length);
+        from.offset += length;
     }
-    return position;
+    return {static_cast<int>(next - lines.begins.begin()) - 1, from.character};
 }
 
 Range range_of(const Lines &lines, std::size_t begin, std::size_t end) {

@@ -51,8 +51,8 @@ Json tokens_within(Session &session, OpenText &document, v1::Stretch within) {
     for (const v1::SemanticToken &token : taken(session.workspace.tokens(document.path, within)))
         for (std::size_t begin = token.at.begin;
              begin < token.at.end;) { // a comment may have lines
-            const std::size_t end =
-                std::min<std::size_t>(lines.text.find('\n', begin), token.at.end);
+            const std::size_t end = std::min<std::size_t>(
+                lines.text.substr(0, token.at.end).find('\n', begin), token.at.end);
             put(begin, end, token);
             begin = end + 1;
         }

@@ -81,6 +81,30 @@ TEST_CASE("positions count lines and code points from 1") {
     CHECK(text(sources, Span{}).empty());
 }
 
+TEST_CASE("a column is found without reading its line from the begin") {
+    std::string long_line = "first\n";
+    for (int i = 0; i < 400; ++i) long_line += "aé漢😀\xff\xe2\x82";
+    Sources sources;
+    const Source &source = sources[sources.add("a.sdf", long_line + "\nlast 漢")];
+    std::uint32_t begin = 0, line = 1, column = 1;
+    for (std::uint32_t at = 0; at < source.text.size(); ++at) {
+        const std::uint32_t end = begin + decode_utf8(source.text, begin).length;
+        if (at == end) {
+            ++column;
+            if (source.text[begin] == '\n') ++line, column = 1;
+            begin = end;
+        }
+        const Position found = position(source, at);
+        if (found.line != line || found.column != column) // a check for each would be slow
+            FAIL(at << ": " << found.line << ":" << found.column);
+    }
+    // … and no search is long: what is decoded begins at most a milestone before
+    REQUIRE(source.milestones.size() >= long_line.size() / 260);
+    for (std::size_t i = 1; i < source.milestones.size(); ++i)
+        CHECK(source.milestones[i].offset - source.milestones[i - 1].offset <= 259);
+    CHECK(sources[sources.add("b.sdf", "short\nlines\n")].milestones.empty());
+}
+
 TEST_CASE("near names are those within a third of the word") {
     const std::vector<std::string> names = {"sphere", "cylinder", "box", "smooth_union", "x", "Y"};
     CHECK(nearest_name("spere", names) == "sphere");
