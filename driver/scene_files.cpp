@@ -40,9 +40,17 @@ bool SceneFiles::allowed(const fs::path &canonical) const {
 
 std::variant<SceneFiles::Found, LoadError> SceneFiles::find(const std::string &path,
                                                             const std::string &from) {
-    std::vector<fs::path> folders;
+    if (auto error = typecheck::too_long(path)) return *error;
     auto importer = printed_.find(from);
-    folders.push_back(importer == printed_.end() ? scene_folder_ : importer->second.parent_path());
+    fs::path beside = importer == printed_.end() ? scene_folder_ : importer->second.parent_path();
+    const auto [answer, is_new] = answers_.try_emplace({beside.string(), path});
+    if (is_new) answer->second = look_for(path, std::move(beside));
+    return answer->second;
+}
+
+std::variant<SceneFiles::Found, LoadError> SceneFiles::look_for(const std::string &path,
+                                                                fs::path beside) {
+    std::vector<fs::path> folders{std::move(beside)};
     folders.insert(folders.end(), include_folders_.begin(), include_folders_.end());
 
     bool outside = false;
@@ -99,14 +107,15 @@ typecheck::Loader SceneFiles::loader() {
                               const More &...more) -> std::variant<Data, LoadError> {
             auto found = find(path, from);
             if (auto *error = std::get_if<LoadError>(&found)) return *error;
-            const fs::path file = std::get<Found>(found).file;
+            const auto &[file, printed] = std::get<Found>(found);
             if (stamp_of(file).size > room.bytes)
                 return LoadError{LoadError::Reason::TooLarge, "takes more memory than is left"};
             std::string error;
             std::optional<std::string> bytes = read_file(file, room.bytes, error);
             if (!bytes) return unreadable(error);
             std::variant<Data, LoadError> data = decode(*bytes, room, more...);
-            if (auto *made = std::get_if<Data>(&data)) made->name = path;
+            if (auto *made = std::get_if<Data>(&data))
+                made->name = path, made->file = printed.string();
             return data;
         };
     };

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace fathom::driver {
@@ -36,6 +38,8 @@ class SceneFiles {
     };
     std::variant<Found, typecheck::LoadError> find(const std::string &path,
                                                    const std::string &from);
+    std::variant<Found, typecheck::LoadError> look_for(const std::string &path,
+                                                       std::filesystem::path beside);
     bool allowed(const std::filesystem::path &canonical) const;
 
     std::filesystem::path scene_folder_;
@@ -44,6 +48,9 @@ class SceneFiles {
     std::vector<std::filesystem::path> roots_;             // canonical
     std::map<std::string, std::filesystem::path> printed_; // by identity: how that file is printed
     std::map<std::filesystem::path, FileStamp> touched_;
+    // What `find` said of a name beside a folder: the system is asked once.
+    std::map<std::pair<std::string, std::string>, std::variant<Found, typecheck::LoadError>>
+        answers_;
 };
 
 } // namespace fathom::driver

@@ -162,8 +162,9 @@ struct TopLevel {
 struct ImageData {
     std::string name;
     int width = 0, height = 0;
-    std::vector<float> rgba;
-}; // linear
+    std::vector<float> rgba; // linear
+    std::string file{};      // where it was read, as its user would write it; may be empty
+};
 // Distances at the corners of a lattice: the first sample stands at `lo`, the last at `hi`, in the
 // space of the shape.
 struct GridData {
@@ -172,6 +173,7 @@ struct GridData {
     std::vector<float> values;
     std::array<double, 3> lo{-0.5, -0.5, -0.5}, hi{0.5, 0.5, 0.5};
     std::string part{}; // the grid's name in the file, where the text says one
+    std::string file{}; // where it was read, as its user would write it; may be empty
 };
 
 // A whole scene: shapes and expressions, and after lowering its functions.

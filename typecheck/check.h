@@ -37,6 +37,10 @@ struct Room {
     std::size_t bytes = std::size_t(-1), steps = std::size_t(-1), pixels = std::size_t(-1);
 };
 
+// Of a name that no system would open; a path is not even made of it.
+constexpr std::size_t longest_file_name = 4096; // bytes
+std::optional<LoadError> too_long(std::string_view path);
+
 // What a scene may read of the world; paths are as the user wrote them, `from` the identity of the
 // file that reads.
 struct Loader {

@@ -6,6 +6,7 @@
 // with them becomes an ir::Function.
 #pragma once
 
+#include "typecheck/assets.h"
 #include "typecheck/check.h"
 #include "typecheck/value.h"
 #include "typecheck/what.h"
@@ -253,9 +254,8 @@ struct Interpreter {
     std::vector<ir::NodeId> param_nodes{}; // by Scene::params
     std::unordered_map<std::uint32_t, bool> only_shapes{};
     std::map<ir::ShapeId, std::vector<std::array<double, 2>>>
-        corners{}; // of polygons' fields, where known
-    std::map<std::string, std::uint32_t>
-        assets{}; // images and grids by what was named: their number
+        corners{};   // of polygons' fields, where known
+    Assets assets{}; // images and grids
     std::vector<LoopVariable> loop_variables{};
     std::unordered_map<std::uint32_t, Iteration> iterations{}; // by ShapeId
     int symbolic_iterations = 0;                               // > 0 while one runs

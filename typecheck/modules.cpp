@@ -2,6 +2,7 @@
 // the start.
 #include "typecheck/interpreter.h"
 
+#include "base/text.h"
 #include "lang/parse.h"
 
 #include <fmt/format.h>
@@ -208,12 +209,16 @@ Value import_module(Interpreter &ev, const lang::Import &import, Span, std::uint
         ev.modules[module].loaded = true;
         return bring(ev, import, module, importer);
     }
-    auto loaded = ev.loader.text(import.path, ev.modules[importer].identity);
+    using Loaded = std::variant<LoadedText, LoadError>;
+    if (!spend_on_lookup(ev, import.path_span, import.path)) return import_failed(ev, import);
+    const auto long_name = too_long(import.path);
+    Loaded loaded =
+        long_name ? Loaded(*long_name) : ev.loader.text(import.path, ev.modules[importer].identity);
     if (auto *error = std::get_if<LoadError>(&loaded)) {
         Code code = error->reason == LoadError::Reason::Outside ? Code::ImportOutside
                                                                 : Code::ImportNotFound;
-        Diagnostic &d =
-            report(ev, code, import.path_span, fmt::format("`{}`: {}", import.path, error->why));
+        Diagnostic &d = report(ev, code, import.path_span,
+                               fmt::format("`{}`: {}", short_name(import.path), error->why));
         if (error->reason == LoadError::Reason::NotFound)
             d.note("paths are relative to the importing file, then to the -I folders");
         else if (error->reason == LoadError::Reason::Outside)
@@ -226,6 +231,9 @@ Value import_module(Interpreter &ev, const lang::Import &import, Span, std::uint
         return import_failed(ev, import);
     }
     LoadedText text = std::get<LoadedText>(std::move(loaded));
+    constexpr std::size_t bytes_a_step = 64; // that are read
+    if (!spend(ev, import.path_span, text.text.size() / bytes_a_step))
+        return import_failed(ev, import);
     for (std::uint32_t i = 0; i < ev.modules.size(); ++i) {
         if (ev.modules[i].identity != text.identity) continue;
         if (ev.modules[i].loaded) return bring(ev, import, i, importer);

@@ -3,6 +3,7 @@
 // read by the loader alone.
 #include "typecheck/textures.h"
 #include "base/srgb.h"
+#include "base/text.h"
 #include "typecheck/builtins/builtins.h"
 #include "typecheck/rewrite_leaves.h"
 
@@ -22,6 +23,8 @@ using ir::ShapeId;
 using ir::ShapeKind;
 using ir::Type;
 
+constexpr std::size_t pixels_a_step = 16, values_a_step = 64; // that are looked at
+
 // -- files ---------------------------------------------------------------------------------------
 
 static void refuse(Interpreter &ev, Span place, const char *what, const std::string &path,
@@ -33,7 +36,8 @@ static void refuse(Interpreter &ev, Span place, const char *what, const std::str
                       : error.reason == Reason::TooMuchWork || error.reason == Reason::TooManyPixels
                           ? Code::LoopLimit
                           : Code::FileNotFound;
-    Diagnostic &d = report(ev, code, place, fmt::format("the {} `{}`: {}", what, path, error.why));
+    Diagnostic &d =
+        report(ev, code, place, fmt::format("the {} `{}`: {}", what, short_name(path), error.why));
     if (code == Code::ImportOutside) d.help(way_inside(path));
     for (const auto &[of, limit] : {std::pair(Reason::TooLarge, &Limits::memory),
                                     std::pair(Reason::TooMuchWork, &Limits::work),
@@ -57,26 +61,42 @@ static const std::string &naming_file(const Interpreter &ev) {
 template <class Data, class Load, class... More> static std::optional<std::uint32_t>
 loaded(Interpreter &ev, const Load &load, std::vector<Data> &all, const char *what,
        const std::string &path, Span place, const More &...more) {
+    for (const std::string_view name : {std::string_view(path), std::string_view(more)...})
+        if (const auto error = too_long(name)) {
+            refuse(ev, place, what, path, *error);
+            return std::nullopt;
+        }
     const std::string from = naming_file(ev);
     const std::string kind = (std::string(what) + ... + fmt::format("\n{}:{}", more.size(), more));
-    const auto named = ev.assets.try_emplace(fmt::format("{}\n{}\n{}", kind, from, path), 0);
+    const std::string key = fmt::format("{}\n{}\n{}", kind, from, path);
+    if (const auto known = ev.assets.absent.find(key); known != ev.assets.absent.end()) {
+        refuse(ev, place, what, path, known->second);
+        return std::nullopt;
+    }
+    const auto named = ev.assets.numbers.try_emplace(key, 0);
     std::uint32_t &index = named.first->second;
     if (!named.second) return index;
+    ev.made += 2 * key.size(); // where it is remembered, here and by who looks for it
     const auto fail = [&](const LoadError &error) {
         refuse(ev, place, what, path, error);
-        ev.assets.erase(named.first);
+        ev.assets.numbers.erase(named.first);
+        ev.assets.absent.emplace(key, error);
         return std::nullopt;
     };
+    if (!spend_on_lookup(ev, place, path)) {
+        ev.assets.numbers.erase(named.first);
+        return std::nullopt;
+    }
     const auto identity = ev.loader.identity(path, from);
     if (auto *error = std::get_if<LoadError>(&identity)) return fail(*error);
-    const auto same =
-        ev.assets.try_emplace(fmt::format("{}\n{}", kind, std::get<std::string>(identity)), 0);
+    const auto same = ev.assets.numbers.try_emplace(
+        fmt::format("{}\n{}", kind, std::get<std::string>(identity)), 0);
     if (!same.second) return index = same.first->second;
     const Room before = room_left(ev);
     Room room = before;
     auto data = load(path, from, room, more...);
     if (auto *error = std::get_if<LoadError>(&data)) {
-        ev.assets.erase(same.first);
+        ev.assets.numbers.erase(same.first);
         return fail(*error);
     }
     ev.made += before.bytes - room.bytes;
@@ -249,9 +269,14 @@ std::optional<ShapeId> painted_by_base(Interpreter &ev, ShapeId shape, const ir:
 // -- displacement --------------------------------------------------------------------------------
 
 // An image's brightness as it is stored (not linear), 0..1: what a height map means.
-static std::uint32_t heights_of(Interpreter &ev, std::uint32_t image) {
-    auto [it, added] = ev.assets.try_emplace(fmt::format("heights\n{}", image), 0);
-    if (!added) return it->second;
+static std::optional<std::uint32_t> heights_of(Interpreter &ev, std::uint32_t image, Span place) {
+    if (const auto known = ev.assets.heights.find(image); known != ev.assets.heights.end())
+        return known->second;
+    const std::size_t numbers = ev.scene.images[image].rgba.size();
+    if (!spend(ev, place, numbers / 4 / pixels_a_step) ||
+        !has_room(ev, place, numbers * sizeof(float)))
+        return std::nullopt;
+    ev.made += numbers * sizeof(float);
     ir::ImageData heights = ev.scene.images[image];
     for (std::size_t i = 0; i + 3 < heights.rgba.size(); i += 4) {
         const double linear = 0.2126 * heights.rgba[i] + 0.7152 * heights.rgba[i + 1] +
@@ -260,31 +285,10 @@ static std::uint32_t heights_of(Interpreter &ev, std::uint32_t image) {
                     static_cast<float>(srgb_of_linear(linear)));
         heights.rgba[i + 3] = 1;
     }
-    it->second = static_cast<std::uint32_t>(ev.scene.images.size());
+    const auto made = static_cast<std::uint32_t>(ev.scene.images.size());
+    ev.assets.heights.emplace(image, made);
     ev.scene.images.push_back(std::move(heights));
-    return it->second;
-}
-
-struct Heights {
-    double minimum = 0, maximum = 0, mean = 0;
-    double slope_u = 0, slope_v = 0; // per image: bilinear, so the largest step between neighbours
-};
-static Heights measured(const ir::ImageData &image) {
-    Heights out{1e30, -1e30, 0, 0, 0};
-    const auto at = [&](int x, int y) {
-        return double(
-            image.rgba[static_cast<std::size_t>(y % image.height * image.width + x % image.width) *
-                       4]);
-    };
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
-            const double h = at(x, y);
-            out.minimum = std::min(out.minimum, h), out.maximum = std::max(out.maximum, h);
-            out.mean += h / (double(image.width) * image.height);
-            out.slope_u = std::max(out.slope_u, std::fabs(at(x + 1, y) - h) * image.width);
-            out.slope_v = std::max(out.slope_v, std::fabs(at(x, y + 1) - h) * image.height);
-        }
-    return out;
+    return made;
 }
 
 // _displace_map(s, image, amount, scale): f - amount * h on each base shape, h the map's
@@ -296,8 +300,10 @@ static Value displace_map_call(Interpreter &ev, const CallSite &site, std::vecto
     auto amount = want_scalar_node(ev, args[2], site.arg(2), "`amount`");
     if (!s || !map || !amount) return poison();
     ir::Graph &g = ev.scene.graph;
-    const std::uint32_t image = heights_of(ev, static_cast<std::uint32_t>(map->image));
-    const Heights heights = measured(ev.scene.images[image]);
+    const auto made = heights_of(ev, static_cast<std::uint32_t>(map->image), site.arg(1));
+    if (!made) return poison();
+    const std::uint32_t image = *made;
+    const ImageFacts heights = facts_of_image(ev.assets, image, ev.scene.images[image]);
     const double span = std::max(heights.maximum - heights.mean, heights.mean - heights.minimum);
     ev.scene.shapes.displacement_maps.push_back({*map, *amount, {}});
     const auto record = static_cast<std::uint32_t>(ev.scene.shapes.displacement_maps.size());
@@ -341,70 +347,6 @@ static Value displace_map_call(Interpreter &ev, const CallSite &site, std::vecto
 
 // -- grids ---------------------------------------------------------------------------------------
 
-// What is known of a grid's trilinear field.
-struct GridFacts {
-    double least = 0, greatest = 0;
-    double steepest = 0; // per unit of space
-};
-static GridFacts measured(const ir::GridData &grid) {
-    // In a cell each partial derivative is a mean of the steps along its four edges.
-    const auto [nx, ny, nz] = grid.size;
-    const auto at = [&, nx = nx, ny = ny](int x, int y, int z) {
-        return double(grid.values[static_cast<std::size_t>((z * ny + y) * nx + x)]);
-    };
-    GridFacts out;
-    const auto [least, greatest] = std::minmax_element(grid.values.begin(), grid.values.end());
-    out.least = *least, out.greatest = *greatest;
-    std::array<double, 3> spacing{};
-    for (std::size_t i = 0; i < 3; ++i) spacing[i] = (grid.hi[i] - grid.lo[i]) / (grid.size[i] - 1);
-    for (int z = 0; z + 1 < nz; ++z)
-        for (int y = 0; y + 1 < ny; ++y)
-            for (int x = 0; x + 1 < nx; ++x) {
-                std::array<double, 3> d{};
-                for (int i = 0; i < 2; ++i)
-                    for (int j = 0; j < 2; ++j) {
-                        d[0] = std::max(d[0],
-                                        std::fabs(at(x + 1, y + i, z + j) - at(x, y + i, z + j)));
-                        d[1] = std::max(d[1],
-                                        std::fabs(at(x + i, y + 1, z + j) - at(x + i, y, z + j)));
-                        d[2] = std::max(d[2],
-                                        std::fabs(at(x + i, y + j, z + 1) - at(x + i, y + j, z)));
-                    }
-                out.steepest =
-                    std::max(out.steepest,
-                             std::hypot(d[0] / spacing[0], d[1] / spacing[1], d[2] / spacing[2]));
-            }
-    return out;
-}
-
-using Corners = std::array<std::array<double, 3>, 2>;
-
-// The box that holds what is inside: of all cells that have a corner there. `margin`: by how much a
-// value may be on the other side, for what interpolation rounds.
-static Corners inside_box(const ir::GridData &grid, double level, bool above, double margin) {
-    std::array<int, 3> first = grid.size, last{-1, -1, -1};
-    std::size_t index = 0;
-    for (int z = 0; z < grid.size[2]; ++z)
-        for (int y = 0; y < grid.size[1]; ++y)
-            for (int x = 0; x < grid.size[0]; ++x) {
-                const double value = grid.values[index++];
-                if (above ? value < level - margin : value > level + margin) continue;
-                const std::array at{x, y, z};
-                for (std::size_t i = 0; i < 3; ++i) {
-                    first[i] = std::min(first[i], at[i]);
-                    last[i] = std::max(last[i], at[i]);
-                }
-            }
-    Corners out{grid.lo, grid.hi};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double spacing = (grid.hi[i] - grid.lo[i]) / (grid.size[i] - 1);
-        // The grid's own corners stay as they are.
-        if (first[i] > 1) out[0][i] = grid.lo[i] + (first[i] - 1) * spacing;
-        if (last[i] + 2 < grid.size[i]) out[1][i] = grid.lo[i] + (last[i] + 1) * spacing;
-    }
-    return out;
-}
-
 // Where the numbers of a grid leave too little room to reckon with them.
 constexpr double largest_value = 1e30;
 
@@ -421,7 +363,7 @@ static Value grid_call(Interpreter &ev, const CallSite &site, std::vector<Value>
     if (!index) return poison();
     ev.scene.grids[*index].part = *name;
     const ir::GridData &grid = ev.scene.grids[*index];
-    const GridFacts facts = measured(grid);
+    const GridFacts facts = facts_of_grid(ev.assets, *index, grid);
     if (!(std::max({std::fabs(facts.least), std::fabs(facts.greatest), facts.steepest}) <
           largest_value)) {
         report(ev, Code::NumberRange, site.arg(0),
@@ -445,6 +387,7 @@ static Value grid_call(Interpreter &ev, const CallSite &site, std::vector<Value>
                                 *path, (facts.least + facts.greatest) / 2));
             return poison();
         }
+        if (!spend(ev, site.call, grid.values.size() / values_a_step)) return poison();
         inside = inside_box(grid, at, *above, margin);
     }
     const auto corner = [](const std::array<double, 3> &c) {

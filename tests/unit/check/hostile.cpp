@@ -53,6 +53,20 @@ TEST_CASE("lists have an end") {
                  "}\nsphere(len(d(40)))") == "loop-limit"); // 640 MiB are nearly as soon reached
 }
 
+TEST_CASE("looking for files is work") {
+    CHECK(answer("for i in 0..1000000 { image(\"a.png\") }\nsphere(1)") == "file-not-found");
+    CHECK(answer("for i in 0..1000000 { image(\"a\" + i + \".png\") }\nsphere(1)") ==
+          "file-not-found loop-limit");
+    // Of folders in folders each is gone through for each.
+    CHECK(answer("let way = fold(0..2000, \"\", (s, i) => s + \"a/\")\n"
+                 "for i in 0..20 { image(way + i) }\nsphere(1)") == "file-not-found loop-limit");
+    CHECK(answer("import \"" + times("a", 4097) + "\"\nsphere(1)") == "import-not-found");
+    CHECK(answer("let name = fold(0..13, \"a\", (s, i) => s + s)\nimage(name)\nsphere(1)") ==
+          "file-not-found");
+    CHECK(answer("let name = fold(0..13, \"a\", (s, i) => s + s)\n"
+                 "distance_grid(\"a.vdb\", grid: name)") == "file-not-found");
+}
+
 TEST_CASE("texts nest so far and no further") {
     const int deep = 100'000;
     CHECK(answer("sphere(" + times("(", deep) + "1" + times(")", deep) + ")") == "too-deep");

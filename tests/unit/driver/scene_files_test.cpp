@@ -78,6 +78,19 @@ TEST_CASE("a missing file beside a scene that is named without a folder is missi
     CHECK(a.error == "no such file");
 }
 
+TEST_CASE("a name is looked for once, and one that no system would open not at all") {
+    ScratchFolder folder;
+    SceneFiles files(folder.path(), {}, {});
+    const std::string root = files.add_root(folder / "main.sdf");
+    CHECK(ask(files, "a.sdf", root).error == "no such file");
+    folder.write("a.sdf", "a");
+    CHECK(ask(files, "a.sdf", root).error == "no such file"); // it was asked for
+    CHECK(ask(files, "./a.sdf", root).text == "a");
+    CHECK(ask(files, std::string(4094, '/') + "ab", root).outside);
+    const std::string error = ask(files, std::string(4097, 'a'), root).error;
+    CHECK(error == "the name has 4097 bytes, and no more than 4096 are looked for");
+}
+
 TEST_CASE("a link within the allowed folders is followed") {
     ScratchFolder folder;
     folder.write("scene/real.sdf", "real");
