@@ -34,12 +34,38 @@ Imported import_yaml(std::string_view name, std::string_view yaml, bool strict) 
     return import_yaml(name, yaml, options);
 }
 
+namespace {
+
+// The file as seen from the folder of `out`, both as the system has them.
+std::string path_from(const std::filesystem::path &out, const std::string &file) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const auto folder_of = [&](const fs::path &path) {
+        return fs::weakly_canonical(fs::absolute(path, error).parent_path(), error);
+    };
+    const fs::path from = folder_of(out), to = folder_of(file) / fs::path(file).filename();
+    return error ? "" : to.lexically_relative(from).generic_string();
+}
+
+} // namespace
+
 std::string export_yaml(const Scene &scene, std::vector<Diagnostic> *diagnostics) {
+    return export_yaml(scene, ExportOptions{}, diagnostics);
+}
+
+std::string export_yaml(const Scene &scene, const ExportOptions &options,
+                        std::vector<Diagnostic> *diagnostics) {
     std::vector<Diagnostic> said;
     std::string yaml = guarded(
         [&] {
             Diagnostics found;
-            std::string text = save::export_yaml(ir_of(scene), found);
+            save::ExportOptions to;
+            if (!options.out.empty())
+                to.path_of = [&](const std::string &file) { return path_from(options.out, file); };
+            for (const auto &[name, value] : scene.impl().origin->options.limits)
+                (void)set_limit(to.limits,
+                                name + "=" + value); // it was good when the scene was read
+            std::string text = save::export_yaml(ir_of(scene), found, to);
             said = translated(found, scene.impl().compilation->sources);
             return text;
         },

@@ -65,7 +65,9 @@ Exit run(const ExportCommand &command, Terminal &terminal) {
     if (const Exit exit = report(result, terminal); exit != done) return exit;
     if (overwrites(result.files, command.out, terminal)) return usage_error;
     std::vector<v1::Diagnostic> diagnostics;
-    const std::string yaml = v1::export_yaml(*result.scene, &diagnostics);
+    v1::ExportOptions options;
+    if (!command.out.empty() && command.out != "-") options.out = command.out;
+    const std::string yaml = v1::export_yaml(*result.scene, options, &diagnostics);
     print_diagnostics(diagnostics, 0, result.texts, terminal);
     return has_errors(diagnostics) ? scene_error : write_result(command.out, yaml, terminal);
 }

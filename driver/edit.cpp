@@ -152,7 +152,7 @@ std::variant<std::string, EditError> save_file_with_camera(const std::string &ya
         compile_text("", with_camera(imported.sdf, camera), folder, options);
     if (!compilation.good()) return EditError{first_error(compilation.diagnostics)};
     Diagnostics writing;
-    std::string text = save::export_yaml(compilation.scene, writing);
+    std::string text = save::export_yaml(compilation.scene, writing, {options.limits, {}});
     for (const Diagnostic &remark : writing.sorted()) // a note says what is kept under labels
         if (remark.severity != Severity::Note)
             return EditError{"the save format has no place for all of it: " + remark.message};

@@ -5,8 +5,10 @@
 #pragma once
 
 #include "base/diagnostic.h"
+#include "base/limits.h"
 #include "ir/scene.h"
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -44,9 +46,20 @@ struct ImportResult {
 ImportResult import_yaml(const Sources &sources, SourceId source, Diagnostics &diagnostics,
                          const ImportOptions &options = {});
 
+// How an export is done.
+struct ExportOptions {
+    Limits limits;
+    // Of a file as the scene found it: its path as seen from the save file's folder, or "" where
+    // nobody knows. None: images and grids keep the names that the scene has for them.
+    std::function<std::string(const std::string &file)> path_of{};
+};
+
 // The scene at the present values of its params and at time 0. What 0.3 cannot say goes out under
 // labelled keys and nodes that `import_yaml` reads back; what not even those can say is reported
-// (`unsupported`, as a warning, at its place in the scene's text) and left out.
-std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics);
+// (`unsupported`, as a warning, at its place in the scene's text) and left out. Shapes that are
+// shared become nodes each time: where that takes more than the limits `work` and `memory` there is
+// an error, and no text.
+std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics,
+                        const ExportOptions &options = {});
 
 } // namespace fathom::save

@@ -44,8 +44,17 @@ FATHOM_API Imported import_yaml(std::string_view name, std::string_view yaml, bo
 FATHOM_API Imported import_yaml(std::string_view name, std::string_view yaml,
                                 const ImportOptions &options);
 
-/** The scene at the present values of its params and at time 0. */
+struct ExportOptions {
+    /** Where the text will stand. Then paths of images and grids are written as seen from there,
+     *  with a warning for each that lies outside of its folder. Empty: as the scene has them. */
+    std::filesystem::path out;
+};
+
+/** The scene at the present values of its params and at time 0; empty where it takes more than the
+ *  limits that the scene was compiled with, which is among the diagnostics. */
 FATHOM_API std::string export_yaml(const Scene &scene,
+                                   std::vector<Diagnostic> *diagnostics = nullptr);
+FATHOM_API std::string export_yaml(const Scene &scene, const ExportOptions &options,
                                    std::vector<Diagnostic> *diagnostics = nullptr);
 
 } // namespace fathom::FATHOM_V1

@@ -80,9 +80,9 @@ std::string stem(std::string_view file) {
 
 } // namespace
 
-Appearances::Appearances(const ir::Scene &scene, Numbers &numbers, std::vector<Value> textures,
-                         std::vector<Value> materials)
-    : scene_(scene), numbers_(numbers), materials_(std::move(materials)) {
+Appearances::Appearances(const ir::Scene &scene, Numbers &numbers, const FileNames &files,
+                         std::vector<Value> textures, std::vector<Value> materials)
+    : scene_(scene), numbers_(numbers), files_(files), materials_(std::move(materials)) {
     for (Value &texture : textures) {
         for (Entry &item : texture.entries) textures_.push_back(std::move(item));
     }
@@ -96,20 +96,24 @@ Appearances::Appearances(const ir::Scene &scene, Numbers &numbers, std::vector<V
 // A kept texture is found by its file, to which an import may have put the way from the .sdf.
 std::string Appearances::texture(std::int32_t image) {
     if (image < 0 || static_cast<std::size_t>(image) >= scene_.images.size()) return {};
-    const std::string &file = scene_.images[static_cast<std::size_t>(image)].name;
+    const auto index = static_cast<std::size_t>(image);
+    const std::string &file = scene_.images[index].name;
     const auto is_taken = [&](const std::string &name) {
         return std::any_of(textures_.begin(), textures_.end(),
                            [&](const Entry &item) { return item.first == name; });
     };
     for (const auto &[name, value] : textures_) {
         if (value.kind == Value::Kind::Scalar && !value.text.empty() &&
-            (file == value.text || file.ends_with("/" + value.text)))
+            (file == value.text || file.ends_with("/" + value.text))) {
+            texture_images_.try_emplace(name, index);
             return name;
+        }
     }
     std::string name = stem(file);
     for (int i = 2; name.empty() || is_none(name) || is_taken(name); ++i)
         name = fmt::format("{} {}", stem(file), i);
     textures_.emplace_back(name, yaml_word(file));
+    texture_images_.emplace(name, index);
     return name;
 }
 
@@ -166,6 +170,12 @@ Value Appearances::textures() const {
     Value value;
     value.kind = Value::Kind::Mapping;
     value.entries = textures_;
+    for (auto &[name, file] : value.entries)
+        if (const auto image = texture_images_.find(name); image != texture_images_.end()) {
+            const ir::ImageData &data = scene_.images[image->second];
+            if (std::string path = files_.written(file.text, data.file); path != file.text)
+                file = yaml_word(path);
+        }
     return value;
 }
 

@@ -16,8 +16,8 @@ Value color_value(const std::array<double, 3> &channels, double alpha);
 // The textures and materials of one export.
 class Appearances {
   public:
-    Appearances(const ir::Scene &scene, Numbers &numbers, std::vector<Value> textures,
-                std::vector<Value> materials);
+    Appearances(const ir::Scene &scene, Numbers &numbers, const FileNames &files,
+                std::vector<Value> textures, std::vector<Value> materials);
 
     // A material's name, by its index into Shapes::materials; empty where its appearances depend on
     // the point.
@@ -27,6 +27,7 @@ class Appearances {
     bool displaces(const std::string &material, const ir::DisplacementMap &map, double by) const;
 
     Value textures() const;
+    const FileNames &files() const { return files_; }
     const std::vector<Value> &materials() const { return materials_; }
 
   private:
@@ -42,7 +43,9 @@ class Appearances {
 
     const ir::Scene &scene_;
     Numbers &numbers_;
-    std::vector<Entry> textures_; // name -> file
+    const FileNames &files_;
+    std::vector<Entry> textures_;                       // name -> file, as the scene calls it
+    std::map<std::string, std::size_t> texture_images_; // by name, of those that the scene has
     std::vector<Value> materials_;
     std::map<std::string, std::size_t, std::less<>> by_name_;
 };

@@ -23,42 +23,6 @@ Value *find(Value &mapping, std::string_view key) {
     return const_cast<Value *>(std::as_const(mapping).find(key));
 }
 
-Value varying_value(const TreeNode &node) {
-    Value value;
-    value.kind = Value::Kind::Mapping;
-    value.entries = node.varying;
-    return value;
-}
-
-Value node_value(const TreeNode &node, std::map<std::string, int> &ordinals) {
-    if (node.verbatim) return *node.verbatim;
-    Value properties;
-    properties.kind = Value::Kind::Mapping;
-    properties.entries = node.properties;
-    const NodeTypeRow *row = find_node_type(node.type);
-    if (!node.varying.empty()) properties.entries.emplace_back("Varying", varying_value(node));
-    std::vector<Value> children;
-    for (const TreeNode &child : node.children) children.push_back(node_value(child, ordinals));
-    if (!children.empty() || !row || row->children != Arity::Leaf) {
-        // beside them a kept one that was no list would be read as the children next time
-        std::erase_if(properties.entries, [](const Entry &e) { return e.first == "Children"; });
-        properties.entries.emplace_back("Children", yaml_list(std::move(children)));
-    }
-    std::string name = node.name;
-    if (!node.head) { // as import/tree.cpp counts
-        const int ordinal = ++ordinals[node.type];
-        if (!node.named) name = fmt::format("{} {}", node.type, ordinal);
-    }
-    Value type;
-    type.text = node.type;
-    type.plain = true;
-    Value named = yaml_word(name);
-    named.plain = named.plain || node.plain;
-    std::vector<Value> items{std::move(type), std::move(named), std::move(properties)};
-    items.insert(items.end(), node.extra.begin(), node.extra.end());
-    return yaml_list(std::move(items));
-}
-
 Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> kept,
                    bool imported) {
     // A kept light without a place is the language's own; the others stand for the scene's lights,
@@ -445,15 +409,20 @@ static void report_labelled(const ir::Scene &scene, Numbers &numbers, const Tree
                 .note("the parameter itself is kept, and moves what follows it otherwise");
 }
 
-std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics) {
+std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics,
+                        const ExportOptions &options) {
     KeptItems kept = read_kept(scene.kept);
-    Numbers numbers(scene);
-    Appearances appearances(scene, numbers, std::move(kept.textures), std::move(kept.materials));
+    Budget budget(scene, options.limits, diagnostics);
+    const FileNames files(options, diagnostics);
+    Numbers numbers(scene, budget);
+    Appearances appearances(scene, numbers, files, std::move(kept.textures),
+                            std::move(kept.materials));
     TreeNode root;
     root.type = "Generic";
     root.name = "Distance field";
     root.named = root.head = true;
     root.children = export_tree(scene, numbers, appearances, diagnostics);
+    if (budget.spent()) return "";
     for (const TreeRecord *record : apply_records(kept.tree, root)) {
         std::string place;
         for (const std::size_t index : record->path)
@@ -479,8 +448,8 @@ std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics) {
     if (!caches.items.empty()) root.properties.insert(root.properties.begin(), {"Caches", caches});
     if (!parameters.items.empty())
         root.properties.insert(root.properties.begin(), {"Parameters", parameters});
-    Value tree = node_value(root, ordinals);
     report_labelled(scene, numbers, root, diagnostics);
+    Value tree = node_value(std::move(root), ordinals);
     const bool beside = kept.lighting && !kept.lighting->items.empty() &&
                         switch_of(kept.lighting->items[0]).value_or(false);
     if (beside && !tree.items[2].entries.empty()) { // as the file had it: among the root's children
@@ -491,7 +460,7 @@ std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics) {
         write_item(lighting, 0, out);
     }
     for (const Value &value : settings_values(scene, numbers, kept)) write_item(value, 0, out);
-    return out + "...\n";
+    return budget.spent() ? "" : std::move(out.append("...\n"));
 }
 
 } // namespace fathom::save

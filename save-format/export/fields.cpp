@@ -91,6 +91,8 @@ NodeId TreeWriter::raw_field(ShapeId id) {
     whole.kind = ShapeKind::Offset;
     whole.children = {id};
     whole.args = {graph.number(0)};
+    // The lowering goes over all that there is.
+    if (!numbers_.budget().take(scene_.shapes.size() + graph.size() / 8, 0)) return {};
     ir::ShapeFact fact;
     fact.lipschitz = graph.number(1);
     const ShapeId root = lowered_->shapes.add(std::move(whole));
@@ -107,11 +109,15 @@ NodeId TreeWriter::raw_field(ShapeId id) {
     return field;
 }
 
-bool TreeWriter::painted_within(ShapeId id) const {
+bool TreeWriter::painted_within(ShapeId id) {
+    if (const auto known = painted_within_.find(id); known != painted_within_.end())
+        return known->second;
     const Shape &s = shape(id);
-    if (s.kind == ShapeKind::Paint || s.kind == ShapeKind::Repaint) return true;
-    return std::any_of(s.children.begin(), s.children.end(),
-                       [&](ShapeId child) { return painted_within(child); });
+    const bool painted =
+        s.kind == ShapeKind::Paint || s.kind == ShapeKind::Repaint ||
+        std::ranges::any_of(s.children, [&](ShapeId child) { return painted_within(child); });
+    painted_within_.emplace(id, painted);
+    return painted;
 }
 
 std::optional<TreeNode> TreeWriter::otherwise(ShapeId id, const Paint &paint,

@@ -116,6 +116,7 @@ const char *TreeWriter::add_arguments(TreeNode &result, const ir::Library &l,
     }
     for (const auto &[key, nodes] : l.lists) {
         std::vector<Value> items;
+        if (!numbers_.budget().take(nodes.size(), 4 * sizeof(Value) * nodes.size())) return "";
         for (const NodeId node : nodes) {
             const auto value = numbers_.constant(node);
             if (!value || numbers_.varies(node)) return "this list";
@@ -192,15 +193,16 @@ std::optional<TreeNode> TreeWriter::library(ShapeId id, const Paint &paint) {
         const auto grid = grid_below(scene_.graph, shape(bare(s.children[0])).args);
         if (!grid) return otherwise(id, paint, "this grid");
         const ir::GridData &data = scene_.grids[*grid];
+        const Value file = yaml_word(looks_.files().written(data.name, data.file));
         const bool distances =
             std::none_of(l.arguments.begin(), l.arguments.end(),
                          [](const auto &each) { return each.first == "isovalue"; });
         if (distances && data.part.empty()) {
             TreeNode result = made(NodeType::ExplicitField);
-            add(result, "File", yaml_word(data.name));
+            add(result, "File", file);
             return finish(std::move(result));
         }
-        words.emplace_back("file", yaml_mapping({{"File", yaml_word(data.name)}}));
+        words.emplace_back("file", yaml_mapping({{"File", file}}));
         if (!data.part.empty())
             words.emplace_back("grid", yaml_mapping({{"Text", yaml_word(data.part)}}));
     }

@@ -10,8 +10,36 @@
 #include "save-format/program.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace fathom::save {
+
+Budget::Budget(const ir::Scene &scene, const Limits &limits, Diagnostics &diagnostics)
+    : limits_(limits), diagnostics_(diagnostics),
+      // the scene's own, and the copy of its expressions that the numbers are taken from
+      bytes_(2 * scene.graph.bytes() + scene.shapes.bytes()) {}
+
+bool Budget::take(std::size_t steps, std::size_t bytes) {
+    steps_ += steps;
+    bytes_ += bytes;
+    if (spent_) return false;
+    const auto refuse = [&](Code code, const char *what, std::size_t Limits::*limit) {
+        spent_ = true;
+        diagnostics_.add(code, place, what)
+            .note(limit_note(limits_, limit))
+            .note("a save file has a node for each place where a shape is, also of one that the "
+                  "scene names once and uses often")
+            .help(limit_help(limits_, limit));
+    };
+    if (steps_ > limits_.work)
+        refuse(Code::LoopLimit, "this export takes more work than is allowed", &Limits::work);
+    else if (bytes_ > limits_.memory * mebibyte)
+        refuse(Code::MemoryLimit, "this export takes more memory than is allowed", &Limits::memory);
+    return !spent_;
+}
+
+// What a node takes with its numbers, as a node, as values and as text: measured.
+constexpr std::size_t node_bytes = 2500;
 
 Remark unsaved(Diagnostics &diagnostics, Span place, std::string message) {
     return {diagnostics,
@@ -63,6 +91,7 @@ bool TreeWriter::vector(TreeNode &node, const char *name, NodeId value) {
 }
 
 void TreeWriter::united(ShapeId id, const Paint &paint, std::vector<TreeNode> &out) {
+    if (!numbers_.budget().take(1, node_bytes)) return;
     id = bare(id);
     if (displaced(id, paint, out)) return;
     const Shape &s = shape(id);
@@ -318,7 +347,18 @@ std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
     return std::nullopt;
 }
 
-Numbers::Numbers(const ir::Scene &scene) : graph_(scene.graph) {
+std::string FileNames::written(const std::string &name, const std::string &file) const {
+    if (!options_.path_of || file.empty()) return name;
+    std::string path = options_.path_of(file);
+    if (path.empty()) path = name;
+    if (path.starts_with("../"))
+        unsaved(diagnostics_, {}, "`" + path + "` does not lie in the save file's folder")
+            .note("a scene reads its own folder and those of `-I` alone")
+            .help("copy the file there, or write the save file to a folder that holds both");
+    return path;
+}
+
+Numbers::Numbers(const ir::Scene &scene, Budget &budget) : budget_(budget), graph_(scene.graph) {
     for (std::size_t i = 0; i < scene.graph.size(); ++i) {
         const ir::Node &node = scene.graph[NodeId{i}];
         if (node.op == ir::Op::Param && node.payload < scene.params.size()) {
@@ -356,7 +396,9 @@ std::string Numbers::program(NodeId id) {
 
 std::optional<Value> Numbers::steps(NodeId id) {
     const std::string flow = program(id);
-    if (flow.empty()) return std::nullopt;
+    constexpr std::size_t step_bytes = 16; // of text, and of a value for each byte of it
+    if (flow.empty() || !budget_.take(flow.size() / step_bytes, flow.size() * 2 * step_bytes))
+        return std::nullopt;
     return parse_text(flow).value;
 }
 
@@ -395,8 +437,48 @@ std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers,
                                   Appearances &appearances, Diagnostics &diagnostics) {
     TreeWriter writer(scene, numbers, appearances, diagnostics);
     std::vector<TreeNode> nodes;
-    for (const ir::TopLevel &top : scene.top_level) writer.united(top.shape, {}, nodes);
+    for (const ir::TopLevel &top : scene.top_level) {
+        numbers.budget().place = top.span;
+        writer.united(top.shape, {}, nodes);
+    }
     return nodes;
+}
+
+static Value mapping_of(std::vector<Entry> entries) {
+    Value value;
+    value.kind = Value::Kind::Mapping;
+    value.entries = std::move(entries);
+    return value;
+}
+
+Value node_value(TreeNode node, std::map<std::string, int> &ordinals) {
+    if (node.verbatim) return std::move(*node.verbatim);
+    Value properties = mapping_of(std::move(node.properties));
+    const NodeTypeRow *row = find_node_type(node.type);
+    if (!node.varying.empty())
+        properties.entries.emplace_back("Varying", mapping_of(std::move(node.varying)));
+    std::vector<Value> children;
+    children.reserve(node.children.size());
+    for (TreeNode &child : node.children)
+        children.push_back(node_value(std::move(child), ordinals));
+    if (!children.empty() || !row || row->children != Arity::Leaf) {
+        // beside them a kept one that was no list would be read as the children next time
+        std::erase_if(properties.entries, [](const Entry &e) { return e.first == "Children"; });
+        properties.entries.emplace_back("Children", yaml_list(std::move(children)));
+    }
+    std::string name = node.name;
+    if (!node.head) { // as import/tree.cpp counts
+        const int ordinal = ++ordinals[node.type];
+        if (!node.named) name = fmt::format("{} {}", node.type, ordinal);
+    }
+    Value type;
+    type.text = node.type;
+    type.plain = true;
+    Value named = yaml_word(name);
+    named.plain = named.plain || node.plain;
+    std::vector<Value> items{std::move(type), std::move(named), std::move(properties)};
+    items.insert(items.end(), node.extra.begin(), node.extra.end());
+    return yaml_list(std::move(items));
 }
 
 } // namespace fathom::save

@@ -66,7 +66,7 @@ class TreeWriter {
     std::optional<TreeNode> otherwise(ShapeId id, const Paint &paint, const std::string &what);
     std::optional<TreeNode> no_field(ShapeId id, const std::string &what); // reports
     NodeId raw_field(ShapeId id);
-    bool painted_within(ShapeId id) const;
+    bool painted_within(ShapeId id);
     std::optional<Value> steps(NodeId expression) { return numbers_.steps(expression); }
     // Adds a number (a vector) as it is at present, and what it follows; false where it is none.
     bool number(TreeNode &node, const char *name, NodeId value);
@@ -96,6 +96,7 @@ class TreeWriter {
     Diagnostics &diagnostics_;
     std::optional<ir::Scene> lowered_; // made when a function is first written
     std::unordered_map<ShapeId, NodeId> raw_;
+    std::unordered_map<ShapeId, bool> painted_within_;
     bool boxed_ = false; // functions are written with the boxes that hold them
     int functions_ = 0;  // shapes that went out as functions, so that no one knows where they end
 };

@@ -1,6 +1,7 @@
 // `fathom import` and `fathom export` as scripts see them: exit statuses, what --strict and
 // --partial do, what is left behind, and files that mean harm. Save files are opened by the other
 // commands too.
+#include "base/picture.h"
 #include "shell.h"
 #include "tests/support/effort.h"
 
@@ -109,6 +110,33 @@ TEST_CASE("what an export cannot say is a warning") {
     CHECK(contains(result.err, "loop.sdf:1:1: warning[unsupported]: the save format has no words "
                                "for this function of the point"));
     CHECK(contains(folder.read("loop.yaml"), "Sphere 1"));
+}
+
+TEST_CASE("an export into another folder finds the scene's files again") {
+    ScratchFolder folder;
+    const std::vector<std::uint8_t> shades{0,   0,   0,   255, 255, 255, 255, 255,
+                                           128, 128, 128, 255, 30,  30,  30,  255};
+    folder.write("scenes/img/a.png", fathom::encode_png({2, 2, shades}));
+    folder.write("scenes/a.sdf", "import \"img/b.sdf\" as b\n"
+                                 "sphere(1).displace_map(image(\"img/a.png\"), 0.2)\nb.two()\n");
+    // one that another file names, as it sees it
+    folder.write("scenes/img/b.sdf",
+                 "fn two() = sphere(1).displace_map(image(\"a.png\"), 0.3).translate(x: 4)\n");
+    const char *const points = " --at 1.2,0.3,0.1 --at 4.5,1,0.7";
+    const Result scene = shell(folder, std::string("fathom eval scenes/a.sdf") + points);
+    REQUIRE(scene.exit == 0);
+    Result made = shell(folder, "fathom export scenes/a.sdf -o a.yaml");
+    CHECK(made.exit == 0);
+    CHECK_FALSE(contains(made.err, "does not lie"));
+    CHECK(contains(folder.read("a.yaml"), "scenes/img/a.png"));
+    CHECK_FALSE(contains(folder.read("a.yaml"), folder.path().string()));
+    CHECK(shell(folder, std::string("fathom eval a.yaml") + points).out == scene.out);
+    // beside it a reader has to be allowed to look
+    folder.write("other/x", "");
+    made = shell(folder, "fathom export scenes/a.sdf -o other/a.yaml");
+    CHECK(made.exit == 0);
+    CHECK(contains(made.err, "`../scenes/img/a.png` does not lie in the save file's folder"));
+    CHECK(shell(folder, std::string("fathom eval other/a.yaml -I .") + points).out == scene.out);
 }
 
 TEST_CASE("save files are scenes to all commands, and pass through a pipe") {

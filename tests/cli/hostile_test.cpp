@@ -26,13 +26,17 @@ struct Cost {
     std::string words;
 };
 
-// `fathom check` of a text, in a process of its own. The limits of the system are far off: they are
+// `fathom COMMAND` of a text, in a process of its own. The limits of the system are far off: they are
 // there for a program that would not end.
-Cost check_alone(const std::string &text, std::size_t address_space = std::size_t{8} << 30,
-                 const ScratchFolder &folder = {}) {
+Cost run_alone(std::vector<std::string> command, const std::string &text,
+               std::size_t address_space = std::size_t{8} << 30, const ScratchFolder &folder = {}) {
     folder.write("scene.sdf", text);
-    const std::string scene = (folder.path() / "scene.sdf").string(),
-                      words = (folder.path() / "words").string();
+    const std::string words = (folder.path() / "words").string();
+    command.insert(command.begin(), "fathom");
+    command.insert(command.begin() + 2, (folder.path() / "scene.sdf").string());
+    std::vector<char *> arguments;
+    for (std::string &word : command) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
     const pid_t child = fork();
     if (child == 0) {
         const rlimit processor{80, 80}, memory{address_space, address_space};
@@ -40,7 +44,7 @@ Cost check_alone(const std::string &text, std::size_t address_space = std::size_
         setrlimit(RLIMIT_AS, &memory);
         const int out = open(words.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
         dup2(out, STDERR_FILENO);
-        execl(FATHOM_PROGRAM, "fathom", "check", scene.c_str(), nullptr);
+        execv(FATHOM_PROGRAM, arguments.data());
         _exit(127);
     }
     int status = 0;
@@ -52,6 +56,17 @@ Cost check_alone(const std::string &text, std::size_t address_space = std::size_
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status),
             seconds(used.ru_utime) + seconds(used.ru_stime), double(used.ru_maxrss) / 1024,
             folder.read("words")};
+}
+
+Cost check_alone(const std::string &text, std::size_t address_space = std::size_t{8} << 30,
+                 const ScratchFolder &folder = {}) {
+    return run_alone({"check"}, text, address_space, folder);
+}
+
+std::string times(const std::string &text, int count) {
+    std::string out;
+    for (int i = 0; i < count; ++i) out += text;
+    return out;
 }
 
 std::string lines(int count, const std::function<std::string(int)> &line) {
@@ -145,6 +160,15 @@ std::vector<Hostile> hostile_scenes() {
         {"a union that grows by one", "loop-limit",
          "fold(0..100000, sphere(1), (s, i) => s | sphere(1).translate(x: i))\n"},
         {"mirrors of mirrors", "loop-limit", "fold(0..3000, sphere(1), (s, i) => s.mirror(X))\n"},
+        {"12,000 shapes in one line", "", times("sphere(1); ", 12'000) + "\n"},
+        {"a million files that are not there", "file-not-found",
+         "for i in 0..1000000 { image(\"a.png\") }\nsphere(1)\n"},
+        {"a million files that are not there, all others", "loop-limit",
+         "for i in 0..1000000 { image(\"a\" + i + \".png\") }\nsphere(1)\n"},
+        {"a file's name of 32 MB", "file-not-found", twice + "image(d(\"a\", 25))\nsphere(1)\n"},
+        {"70 messages of 8 MB", "",
+         twice + "let s = d(\"abcdefgh\", 20)\n" + lines(70, [](int) { return "print(s)"; }) +
+             "sphere(1)\n"},
         {"a default that calls itself", "recursion-limit", "fn f(x = f()) = x\nsphere(f())\n"},
     };
 }
@@ -161,6 +185,18 @@ TEST_CASE("each hostile scene is answered within a bound of processor time and 1
         CHECK(cost.seconds < most_seconds());
         CHECK(cost.mebibytes < 1000);
     }
+}
+
+TEST_CASE("what is made of a scene that is small by sharing is bounded, too") {
+    const std::string shared =
+        "fn d(s, n) = if n == 0 { s } else { d(s | s.translate(x: 1), n - 1) "
+        "}\nd(sphere(1), 19)\n";
+    const Cost exported = run_alone({"export", "-o", "/dev/null"}, shared);
+    INFO(exported.words.substr(0, 500));
+    CHECK(exported.exit == 1);
+    CHECK(contains(exported.words, "error[memory-limit]: this export"));
+    CHECK(exported.seconds < most_seconds());
+    CHECK(exported.mebibytes < 1000);
 }
 
 TEST_CASE("numbers that stand twice in the next ones are looked at once") {

@@ -277,3 +277,57 @@ TEST_CASE("children that are given twice, once as none, are not lost on the way"
         CHECK(exported.find("Ball") != std::string::npos);
     }
 }
+
+TEST_CASE("an export of shared shapes counts against the limits", "[save]") {
+    const CheckedText checked = check_text(
+        "fn d(s, n) = if n == 0 { s } else { d(s | s.translate(x: 1), n - 1) }\nd(sphere(1), 12)");
+    REQUIRE(checked.errors().empty());
+    const auto answer = [&](std::size_t work, std::size_t memory) {
+        save::ExportOptions options;
+        options.limits.work = work, options.limits.memory = memory;
+        Diagnostics diagnostics;
+        const std::string text = save::export_yaml(checked.checked.scene, diagnostics, options);
+        CHECK(text.empty() == diagnostics.has_errors());
+        CHECK(diagnostics.errors() <= 1);
+        for (const Diagnostic &d : diagnostics.items())
+            if (d.severity == Severity::Error) {
+                CHECK(d.primary.span.source);
+                return std::string(code_name(d.code));
+            }
+        return std::string();
+    };
+    const Limits usual;
+    CHECK(answer(usual.work, usual.memory) == "");
+    CHECK(answer(20'000, 100) == "");
+    CHECK(answer(2'000, usual.memory) == "loop-limit");
+    CHECK(answer(usual.work, 20) == "memory-limit");
+}
+
+TEST_CASE("paths go out as the save file sees them", "[save]") {
+    CheckedText checked = check_text("sphere(1).paint(material(texture: image(\"a.png\")))\n"
+                                     "distance_grid(\"g.nrrd\", isovalue: 2).translate(x: 3)");
+    INFO(checked.errors());
+    REQUIRE(checked.errors().empty());
+    for (ir::ImageData &image : checked.checked.scene.images) image.file = "scenes/a.png";
+    for (ir::GridData &grid : checked.checked.scene.grids) grid.file = "scenes/g.nrrd";
+    const auto written = [&](const char *way, std::string &said) {
+        save::ExportOptions options;
+        options.path_of = [&](const std::string &file) { return way + file; };
+        Diagnostics diagnostics;
+        const std::string text = save::export_yaml(checked.checked.scene, diagnostics, options);
+        for (const Diagnostic &d : diagnostics.items())
+            if (d.severity == Severity::Warning) said += d.message + "\n";
+        return text;
+    };
+    std::string said;
+    const std::string below = written("deep/", said);
+    CHECK(below.find("deep/scenes/a.png") != below.npos);
+    CHECK(below.find("deep/scenes/g.nrrd") != below.npos);
+    CHECK(said.empty());
+    const std::string beside = written("../", said);
+    CHECK(beside.find("../scenes/a.png") != beside.npos);
+    CHECK(said.find("`../scenes/a.png` does not lie in the save file's folder\n") != said.npos);
+    CHECK(said.find("`../scenes/g.nrrd` does not lie in the save file's folder\n") != said.npos);
+    const std::string as_it_is = export_text(checked.checked.scene);
+    CHECK(as_it_is.find("scenes/") == as_it_is.npos);
+}
