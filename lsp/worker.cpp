@@ -66,8 +66,9 @@ bool Worker::start() {
     std::signal(SIGPIPE, SIG_IGN); // an end that is gone is seen where it is written to
     std::array<int, 2> ends{-1, -1};
     if (!system::open_socket_pair(ends)) return false;
-    const pid_t process = ::fork();
+    const pid_t parent = ::getpid(), process = ::fork();
     if (process == 0) {
+        system::end_with(parent); // it may be in the middle of long work, and hear of nothing
         ::close(ends[0]);
         const int nothing = ::open("/dev/null", O_RDWR); // what prints reaches no client
         ::dup2(nothing, STDIN_FILENO);

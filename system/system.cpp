@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #if defined(__linux__) && !defined(FATHOM_PORTABLE)
+#include <csignal>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 
 namespace fathom::system {
 
@@ -31,6 +33,11 @@ bool is_of_this_user(int socket) {
     ucred who{};
     socklen_t size = sizeof who;
     return ::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &who, &size) == 0 && who.uid == ::getuid();
+}
+
+void end_with(int parent) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) ::_exit(1); // it was gone before that
 }
 
 } // namespace fathom::system
@@ -74,6 +81,10 @@ int open_memory() {
 }
 
 bool is_of_this_user(int) { return true; }
+
+void end_with(int parent) {
+    if (::getppid() != parent) ::_exit(1);
+}
 
 } // namespace fathom::system
 

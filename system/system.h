@@ -24,4 +24,8 @@ int open_memory(); // a file without a name, that is read and written
 // so that the socket has to lie where no other user can come.
 bool is_of_this_user(int socket);
 
+// In a new process: it ends when the one that made it does, however that ends; at once, where that is
+// so already. `parent` is what `getpid` said there. Elsewhere it may go on for a while.
+void end_with(int parent);
+
 } // namespace fathom::system

@@ -4,6 +4,8 @@
 #include "lsp/worker.h"
 
 #include <csignal>
+#include <fstream>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace {
@@ -135,4 +137,33 @@ TEST_CASE("what the client no longer waits for is left") {
     CHECK(Json::parse(diagnostics[0]).at("params").at("version") == 2);
     ::close(client[0]);
     ::close(client[1]);
+}
+
+TEST_CASE("a worker does not outlive its server, however that ends") {
+    int said[2] = {-1, -1};
+    REQUIRE(::pipe(said) == 0);
+    const pid_t server = ::fork();
+    if (server == 0) {
+        Worker worker;
+        worker.handle(message("initialize", Json::object(), 1));
+        const int process = worker.process();
+        ::kill(process, SIGSTOP); // it hears of nothing
+        (void)!::write(said[1], &process, sizeof process);
+        for (;;) ::pause();
+    }
+    int process = 0;
+    REQUIRE(::read(said[0], &process, sizeof process) == sizeof process);
+    REQUIRE(process > 0);
+    REQUIRE(::kill(process, 0) == 0);
+    ::kill(server, SIGKILL);
+    ::waitpid(server, nullptr, 0);
+    const auto runs = [&] { // else it is gone, or only waits to be reaped
+        std::ifstream status("/proc/" + std::to_string(process) + "/stat");
+        std::string number, name, state;
+        return status >> number >> name >> state && state != "Z" && state != "X";
+    };
+    for (int i = 0; i < 1000 && runs(); ++i) ::usleep(10'000);
+    CHECK_FALSE(runs());
+    ::kill(process, SIGKILL);
+    ::close(said[0]), ::close(said[1]);
 }
