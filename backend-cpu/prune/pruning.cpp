@@ -50,6 +50,17 @@ Boxes boxes_inside(const Pruning &pruning, const Place &place, int level) {
     return boxes;
 }
 
+// Some of the boxes.
+Boxes part_of(const Boxes &boxes, std::size_t first, std::size_t count) {
+    Boxes part;
+    part.count = count;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::copy_n(boxes.lo[axis].begin() + first, count, part.lo[axis].begin());
+        std::copy_n(boxes.hi[axis].begin() + first, count, part.hi[axis].begin());
+    }
+    return part;
+}
+
 void pack(const PruneProgram &parts, const ShortTape &tape, PruneBlock &block) {
     for (std::uint32_t id : tape.steps) {
         Step step = parts.table[id];
@@ -95,7 +106,9 @@ bool has_cut(const Selection &tape) {
 // which too many of their points are unknown.
 int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
          const PruneCell &cell, const PruneCell &from, int level, PruneBlock &block) {
-    run_over(pruning.parts, evaluator.shortener, from.tape, boxes);
+    const std::size_t at_once =
+        from.tape.steps.size() > pruning.settings.long_tape ? max_boxes / 4 : max_boxes;
+    std::array<bool, max_boxes> as_above{};
     const float half_diagonal =
         0.8660254f * std::ldexp(pruning.cube.side, -bits_a_level * (level + 1));
     struct Piece {
@@ -105,19 +118,31 @@ int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
     int unknown = 0;
     ShortTape &tape = evaluator.tape;
     for (std::size_t k = 0; k < max_boxes; ++k) {
+        const std::size_t box = k % at_once; // of those that were run over
+        if (box == 0)
+            run_over(pruning.parts, evaluator.shortener, from.tape, part_of(boxes, k, at_once));
         PruneCell &made = block.cells[k];
         made.above = &cell;
         pieces[k] = {block.steps.size(), block.loops.size(), block.packed.size()};
-        const float minimum = evaluator.shortener.result_lo[k];
+        const float minimum = evaluator.shortener.result_lo[box];
         if (pruning.settings.far_cells && minimum >= pruning.settings.far * half_diagonal) {
             made.far = minimum; // where exact values are wanted, the cell above computes them
             continue;
         }
-        shorten(pruning.parts, evaluator.shortener, from.tape, k, true, tape);
+        shorten(pruning.parts, evaluator.shortener, from.tape, box, true, tape);
         if (tape.cut && unknown_of(pruning, evaluator, boxes, k, tape) > tried_points / 2)
-            shorten(pruning.parts, evaluator.shortener, from.tape, k, false, tape);
+            shorten(pruning.parts, evaluator.shortener, from.tape, box, false, tape);
         if (!tape.cut && has_cut(tape.selection(pruning.parts)))
             unknown += unknown_of(pruning, evaluator, boxes, k, tape) > 1;
+        const bool is_long = tape.steps.size() > pruning.settings.long_tape;
+        as_above[k] = is_long && !tape.cut && tape.cost >= 0.8f * from.cost;
+        if (as_above[k]) {
+            made.cost = from.cost;
+            made.shapes = from.shapes;
+            made.splits = level < 1 && pruning.settings.depth > 1;
+            ++evaluator.tally.cells;
+            continue;
+        }
         for (Selection::Rows &rows : tape.loops)
             rows.first += static_cast<std::uint32_t>(block.rows.size());
         block.steps.insert(block.steps.end(), tape.steps.begin(), tape.steps.end());
@@ -128,13 +153,18 @@ int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
         // where cells get smaller and tapes hardly shorter, the shapes are closer than their blends
         made.splits = level + 1 < pruning.settings.depth && tape.cost > pruning.settings.enough &&
                       (level < 1 || tape.cost < 0.8f * cell.cost);
-        if (!made.splits) pack(pruning.parts, tape, block);
+        if (!made.splits && !is_long) pack(pruning.parts, tape, block);
         ++evaluator.tally.cells;
     }
+    if (at_once < max_boxes) std::vector<float>().swap(evaluator.shortener.ends);
     pieces[max_boxes] = {block.steps.size(), block.loops.size(), block.packed.size()};
     for (std::size_t k = 0; k < max_boxes; ++k) {
         const Piece &first = pieces[k], &end = pieces[k + 1];
         Selection &tape_of = block.cells[k].tape;
+        if (as_above[k]) {
+            tape_of = from.tape;
+            continue;
+        }
         tape_of.table = pruning.parts.table.data();
         tape_of.operands = pruning.parts.operands.data();
         tape_of.steps = std::span(block.steps).subspan(first.steps, end.steps - first.steps);
@@ -143,6 +173,9 @@ int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
         tape_of.packed = std::span(block.packed).subspan(first.packed, end.packed - first.packed);
         tape_of.packed_operands = block.operands.data();
     }
+    evaluator.tally.bytes += 4 * (block.steps.size() + block.rows.size() + block.operands.size()) +
+                             sizeof(Step) * block.packed.size() +
+                             sizeof(Selection::Rows) * block.loops.size();
     return unknown;
 }
 

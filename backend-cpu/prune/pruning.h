@@ -26,7 +26,11 @@ struct PruneSettings {
     bool far_cells = true; // the first result is a distance, and bounds of it may be wanted
     int depth = 4;         // levels of cells: 4^depth along an axis
     float enough = 32;     // a tape of so few kernels is short enough
-    float far = 1;         // times half a cell's diagonal: from there on one number has to do
+    // Of a tape with more steps cells keep their numbers alone, and those of the cell above where
+    // they leave hardly any out; and a quarter of the cells is made at a time. So a field of very
+    // many parts that no cell takes apart takes bytes for each, not kilobytes.
+    std::size_t long_tape = 10'000;
+    float far = 1; // times half a cell's diagonal: from there on one number has to do
 };
 
 struct PruneBlock;
@@ -71,6 +75,7 @@ struct CellEvaluator {
         std::uint64_t again = 0;        // points that the cell above evaluated
         double kernels = 0, shapes = 0; // of the near ones' tapes, all told
         std::uint64_t cells = 0;        // with tapes, made by this thread
+        std::uint64_t bytes = 0;        // that those take
     } tally;
     struct Last { // the block that the last place lay in, inside the cell `at` of `level`
         const PruneBlock *block = nullptr;

@@ -27,6 +27,10 @@ class RangeRunner {
         memory_.chosen.clear(), memory_.ends.clear(), memory_.iterations.clear();
         memory_.lows.clear(), memory_.loop_runs.clear(), memory_.cuts.clear();
         memory_.listed.clear();
+        // Of a long tape these are the most of all that is kept: no more than is needed.
+        const auto minima = std::ranges::count_if(
+            tape.steps, [&](std::uint32_t id) { return parts_.parts[id].choice == Choice::Least; });
+        memory_.ends.reserve(3 * n_ * static_cast<std::size_t>(minima) + n_ * tape.loops.size());
         for (std::uint32_t id : tape.steps) {
             const Part &part = parts_.parts[id];
             Shortener::Chosen chosen;
@@ -40,10 +44,8 @@ class RangeRunner {
                 rows(step, tape, tape.loops[loop++]);
             else
                 one(id);
-            if (chosen.ends != no_part) {
-                const std::uint32_t out = parts_.operands[step.operands];
-                copy_ends(cells_.hi, out, memory_.ends[chosen.ends].hi);
-            }
+            if (chosen.ends != Shortener::no_ends)
+                copy_ends(cells_.hi, parts_.operands[step.operands], chosen.ends);
             memory_.chosen.push_back(chosen);
         }
     }
@@ -51,19 +53,24 @@ class RangeRunner {
   private:
     bool shared(std::uint32_t address) const { return address < program_.first_register; }
 
-    void copy_ends(const float *from, std::uint32_t address,
-                   std::array<float, max_boxes> &to) const {
+    void copy_ends(const float *from, std::uint32_t address, std::size_t to) {
         if (shared(address))
-            std::fill_n(to.begin(), n_, from[address]);
+            std::fill_n(memory_.ends.data() + to, n_, from[address]);
         else
-            std::copy_n(from + address, n_, to.begin());
+            std::copy_n(from + address, n_, memory_.ends.data() + to);
     }
 
-    std::uint32_t begin_ends(const Part &part) {
-        Shortener::Ends &ends = memory_.ends.emplace_back();
+    std::size_t add_ends(std::size_t numbers) {
+        const std::size_t begin = memory_.ends.size();
+        memory_.ends.resize(begin + numbers * n_);
+        return begin;
+    }
+
+    std::size_t begin_ends(const Part &part) {
+        const std::size_t ends = add_ends(3);
         for (std::size_t side = 0; side < 2; ++side)
-            copy_ends(cells_.lo, part.operand[side], ends.lo[side]);
-        return static_cast<std::uint32_t>(memory_.ends.size() - 1);
+            copy_ends(cells_.lo, part.operand[side], ends + (1 + side) * n_);
+        return ends;
     }
 
     // A joined ball's own range first: it may be what wins.
@@ -197,8 +204,8 @@ class RangeRunner {
         }
         if (known.minimum >= 0) {
             const Loop::Carried &minimum = loop.carried[static_cast<std::size_t>(known.minimum)];
-            run.ends = static_cast<std::uint32_t>(memory_.ends.size());
-            copy_ends(cells_.hi, minimum.var, memory_.ends.emplace_back().hi);
+            run.ends = add_ends(1);
+            copy_ends(cells_.hi, minimum.var, run.ends);
             above(run, rows.count);
         }
         if (known.chain) cut(loop, known, rows, run);
@@ -301,7 +308,7 @@ class RangeRunner {
     // Of a minimum nothing is changed either by a row that is above it in the end.
     void above(const Shortener::LoopRun &run, std::uint32_t rows) {
         static constexpr float nothing = 0;
-        const float *minimum = memory_.ends[run.ends].hi.data();
+        const float *minimum = memory_.ends.data() + run.ends;
         for (std::uint32_t i = 0; i < rows; ++i)
             if (memory_.iterations[run.first_iteration + i].neutral != everywhere)
                 memory_.iterations[run.first_iteration + i].neutral |=

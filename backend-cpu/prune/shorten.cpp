@@ -69,11 +69,11 @@ class Backward {
         int winner = -1;
         if (chosen.wins[0] & bit_) winner = 0;
         if (chosen.wins[1] & bit_) winner = 1;
-        if (chosen.ends != no_part) {
-            const Shortener::Ends &ends = memory_.ends[chosen.ends];
-            cutoff = std::min(cutoff, ends.hi[box_]);
-            if (winner < 0 && ends.lo[1][box_] > cutoff) winner = 0;
-            if (winner < 0 && ends.lo[0][box_] > cutoff) winner = 1;
+        if (chosen.ends != Shortener::no_ends) {
+            const float *ends = memory_.ends.data() + chosen.ends + box_;
+            cutoff = std::min(cutoff, ends[0]);
+            if (winner < 0 && ends[2 * memory_.boxes] > cutoff) winner = 0;
+            if (winner < 0 && ends[memory_.boxes] > cutoff) winner = 1;
         }
         if (part.choice == Choice::None || winner < 0) {
             const Step &step = parts_.table[id];
@@ -106,7 +106,7 @@ class Backward {
         const RowLoop &known = parts_.loops[step.target];
         Selection::Rows kept{static_cast<std::uint32_t>(tape.rows.size()), 0, from.all, from.cut};
         if (!from.all) {
-            const bool minimum = known.minimum >= 0 && cutoff < memory_.ends[run.ends].hi[box_];
+            const bool minimum = known.minimum >= 0 && cutoff < memory_.ends[run.ends + box_];
             bool renewed = false;
             std::size_t beyond = 0;
             memory_.kept.clear();

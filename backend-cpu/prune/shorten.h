@@ -92,24 +92,25 @@ struct Boxes {
 // One thread's memory for it.
 struct Shortener {
     explicit Shortener(const PruneProgram &parts);
+    static constexpr std::size_t no_ends = std::size_t(-1);
     std::vector<float> lo, hi; // by address
     struct Chosen {
         std::uint64_t wins[2] = {0, 0}; // bit k: in box k
-        std::uint32_t ends = no_part;   // of a minimum: into `ends`
-    };
-    struct Ends {
-        std::array<float, max_boxes> lo[2], hi; // its operands' lower ends, its own upper one
+        std::size_t ends = no_ends;     // of a minimum: where they begin in `ends`
     };
     struct Iteration {
         std::uint64_t neutral = 0, renewed = 0; // nothing changes; nothing of before is left
         std::uint64_t beyond = 0;               // of a chain: may be cut off
     };
     struct LoopRun {
-        std::uint32_t first_iteration = 0, first_low = 0, ends = no_part, cuts = no_part;
+        std::uint32_t first_iteration = 0, first_low = 0, cuts = no_part;
+        std::size_t ends = no_ends;                        // of what it carries: its upper end
         std::array<std::uint32_t, max_boxes + 1> listed{}; // where each box's begin
     };
     std::vector<Chosen> chosen; // by step of the tape at hand
-    std::vector<Ends> ends;
+    // By box: of a minimum its own upper end, then its operands' lower ones; of a loop that carries
+    // one the upper end alone.
+    std::vector<float> ends;
     std::vector<Iteration> iterations;
     std::vector<std::array<Cut, max_boxes>> cuts; // of chains
     std::vector<float> lows;                      // least loops and chains: by iteration and box

@@ -18,7 +18,8 @@ constexpr std::size_t many = 6000;
 
 struct Answers {
     std::size_t differ = 0, above = 0, far = 0;
-    double kernels = 0; // a point in a cell with a tape
+    double kernels = 0;      // a point in a cell with a tape
+    std::uint64_t bytes = 0; // of the cells
 };
 
 // Points in and round the cube -2..2, half of them near the surface.
@@ -68,6 +69,7 @@ Answers compare(const Program &program, PruneSettings settings, float limit) {
         (pruned[0][k] > whole[0][k] ? answers.above : answers.differ) += bound ? 0 : 1;
         answers.far += bound;
     }
+    answers.bytes = evaluator.tally.bytes;
     answers.kernels = evaluator.tally.kernels / static_cast<double>(evaluator.tally.near);
     return answers;
 }
@@ -197,6 +199,29 @@ TEST_CASE("operands that cannot matter are not computed") {
         const Answers answers = check(compile(f.scene, f.function(d), Choices::Apart));
         if (how != 4) CHECK(answers.kernels < 200); // of some 600
     }
+}
+
+TEST_CASE("of a field of very many parts cells keep few bytes for each, and the same bits") {
+    Fields f; // one ball behind the other: most cells leave none out
+    NodeId least = f.ball(0, 0, 0, 1);
+    for (int i = 1; i < 400; ++i)
+        least = f.g.make(Op::Min, {least, f.ball(1e-4 * i, -1e-4 * i, 2e-4 * (i % 7), 1)});
+    const Program program = compile(f.scene, f.function(least), Choices::Apart);
+    PruneSettings settings;
+    settings.depth = 2;
+    const Answers usual = check(program, settings);
+    settings.long_tape = 100;
+    const Answers less = check(program, settings);
+    CHECK(less.bytes < usual.bytes / 4);
+    INFO(usual.bytes << " bytes, " << less.bytes);
+    // and one that cells do take apart
+    Fields far;
+    least = far.ball(0, 0, 0, 0.1);
+    for (int i = 1; i < 400; ++i)
+        least = far.g.make(Op::Min, {least, far.ball(std::sin(i) * 1.8, std::sin(2 * i) * 1.8,
+                                                     std::sin(3 * i) * 1.8, 0.1)});
+    const Program apart = compile(far.scene, far.function(least), Choices::Apart);
+    CHECK(check(apart, settings).kernels < 200);
 }
 
 TEST_CASE("the nearest hit of a table's rows, with its paint, keeps the rows that can be it") {
