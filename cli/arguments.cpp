@@ -59,7 +59,14 @@ void add_scene_options(CLI::App *app, SceneArguments &scene) {
         ->type_name("NAME=VALUE");
     app->add_option("-I", scene.include_folders, "look here too for imports, images and grids")
         ->type_name("DIR")
-        ->check(quiet(CLI::ExistingDirectory))
+        ->check(CLI::Validator(
+            [](std::string &word) {
+                std::error_code none;
+                return std::filesystem::is_directory(word, none)
+                           ? std::string()
+                           : fmt::format("there is no folder `{}`", word);
+            },
+            ""))
         ->expected(1)
         ->allow_extra_args(false) // the word behind it may be the scene
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -421,7 +428,21 @@ struct Reader {
     void add_eval() {
         CLI::App *sub = command("eval", "print the field at points: distance gx gy gz", eval);
         add_scene(sub, eval.scene);
-        sub->add_option("X Y Z", eval.coordinates, "points, as three numbers each")->type_name("");
+        sub->add_option_function<std::vector<std::string>>(
+               "X Y Z",
+               [this](const std::vector<std::string> &words) {
+                   for (const std::string &word : words) {
+                       const std::optional<double> number = read_coordinate(word);
+                       if (!number)
+                           throw CLI::ValidationError(
+                               "X Y Z", fmt::format("a coordinate is a number, as 1.5, not "
+                                                    "beyond 1e18, not `{}`",
+                                                    word));
+                       eval.coordinates.push_back(*number);
+                   }
+               },
+               "points, as three numbers each")
+            ->type_name("");
         option(
             sub, "--at",
             [this](const std::string &word) { return read_point(word, eval.at.emplace_back()); },
@@ -514,6 +535,33 @@ std::string help_hint(const CLI::App &app) {
                : fmt::format("`fathom help {}` shows its options", chosen.front()->get_name());
 }
 
+// What CLI11 says of words that it cannot place: `… not expected: A B`, `Could not convert: NAME = A`.
+std::string in_our_words(Reader &reader, const CLI::ParseError &error) {
+    const std::string said = error.what();
+    const std::size_t colon = said.find(": ");
+    const std::string rest = colon == said.npos ? said : said.substr(colon + 2);
+    if (dynamic_cast<const CLI::ConversionError *>(&error)) {
+        const std::size_t equals = rest.find(" = ");
+        if (equals != rest.npos)
+            return fmt::format("{}: wants a number, not `{}`", rest.substr(0, equals),
+                               rest.substr(equals + 3));
+    }
+    if (!dynamic_cast<const CLI::ExtrasError *>(&error)) return said;
+    const std::vector<CLI::App *> chosen = reader.app.get_subcommands();
+    CLI::App &app = chosen.empty() ? reader.app : *chosen.front();
+    std::vector<std::string> left = app.remaining();
+    if (left.empty()) left = {rest};
+    const std::string word = left.front().substr(0, left.front().find('='));
+    if (word.size() < 2 || word[0] != '-')
+        return fmt::format("`{}` is a word too many", left.front());
+    std::vector<std::string> names;
+    for (const CLI::Option *one : app.get_options([](CLI::Option *) { return true; }))
+        for (const std::string &name : one->get_lnames()) names.push_back("--" + name);
+    const std::string near = nearest_name(word, names);
+    return fmt::format("there is no option `{}`{}", word,
+                       near.empty() ? "" : fmt::format("; did you mean `{}`?", near));
+}
+
 // What help knows of an app's options; positional ones have no names.
 std::vector<HelpOption> options_of(const Reader &reader, CLI::App &app) {
     std::vector<HelpOption> options;
@@ -599,7 +647,7 @@ std::variant<Invocation, Answer> read_arguments(int count, const char *const *ar
         std::vector<CLI::App *> chosen = app.get_subcommands();
         return Answer{done, chosen.empty() ? app.help() : chosen.front()->help("fathom"), ""};
     } catch (const CLI::ParseError &error) {
-        return wrong(fmt::format("{}; {}", error.what(), help_hint(app)));
+        return wrong(fmt::format("{}; {}", in_our_words(reader, error), help_hint(app)));
     }
     if (reader.version) return Answer{done, version_text, ""};
     if (reader.help->parsed()) {

@@ -35,7 +35,7 @@ Exit emit(const CompileCommand &command, const v1::CompileResult &result, Termin
     Exit exit = report(result, terminal);
     if (exit != done) return exit;
     if (overwrites(result.files, command.out, terminal) ||
-        overwrites(result.files, command.reflect, terminal))
+        overwrites(result.files, command.reflect, terminal, "--reflect"))
         return usage_error;
     const v1::ShaderTarget target = target_named(command.target);
     v1::ShaderOptions options;
@@ -64,6 +64,7 @@ Exit emit(const CompileCommand &command, const v1::CompileResult &result, Termin
 
 Exit run(const CompileCommand &command, Terminal &terminal) {
     if (overwrites(command.scene.file, command.out, terminal) ||
+        overwrites(command.scene.file, command.reflect, terminal, "--reflect") ||
         misnamed(command.out, content_of(target_named(command.target)), terminal))
         return usage_error;
     const auto act = [&](const v1::CompileResult &result) {

@@ -1,6 +1,6 @@
 // fathom eval: the marched distance and its gradient at points, on the CPU.
-#include "base/text.h"
 #include "cli/terminal.h"
+#include "cli/words.h"
 
 #include <fathom/field.h>
 
@@ -53,7 +53,7 @@ bool read_point(std::string_view line, std::array<double, 3> &point, bool &empty
         line.remove_prefix(begin);
         std::string_view word = line.substr(0, line.find_first_of(blanks));
         line.remove_prefix(word.size());
-        std::optional<double> number = parse_number(word);
+        std::optional<double> number = read_coordinate(word);
         if (!number || count == 3) return false;
         point[count++] = *number;
     }
@@ -86,8 +86,8 @@ Exit answer_standard_input(PointPrinter &evaluator, Terminal &terminal) {
             if (!read_point(rest.substr(0, end), point, empty)) {
                 evaluator.print(terminal);
                 terminal.flush();
-                terminal.say(
-                    fmt::format("fathom: line {} of the points is not `X Y Z`", line_number));
+                terminal.say(fmt::format(
+                    "fathom: line {} of the points is not `X Y Z`, none beyond 1e18", line_number));
                 return usage_error;
             }
             if (!empty) evaluator.add(point);

@@ -143,6 +143,7 @@ std::unique_ptr<Film> Film::open(const std::string &out, int width, int height, 
         ::dup2(film->words_, STDERR_FILENO);
         ::dup2(film->words_, STDOUT_FILENO);
         std::signal(SIGPIPE, SIG_DFL);
+        std::signal(SIGXFSZ, SIG_DFL);
         std::signal(SIGINT, SIG_IGN); // the one who feeds it decides
         ::execvp("ffmpeg", pointers.data());
         ::_exit(127);

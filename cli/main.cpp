@@ -7,6 +7,7 @@
 int main(int count, char **arguments) {
     using namespace fathom::cli;
     std::signal(SIGPIPE, SIG_IGN); // a reader that goes away is seen at the write
+    std::signal(SIGXFSZ, SIG_IGN); // and so is a file that may not grow further
     std::variant<Invocation, Answer> line = read_arguments(count, arguments);
     if (const auto *answer = std::get_if<Answer>(&line)) {
         Terminal terminal(ColorChoice::Auto);

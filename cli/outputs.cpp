@@ -84,9 +84,9 @@ bool is_stream(const std::string &out) {
     return out.empty() || out == "-" || fs::is_character_file(out, none) || fs::is_fifo(out, none);
 }
 
-bool refuse_overwriting(const std::string &out, Terminal &terminal) {
+bool refuse_overwriting(const std::string &out, Terminal &terminal, const char *option) {
     terminal.say(
-        fmt::format("fathom: -o {}: that is the file that is read; write to another", out));
+        fmt::format("fathom: {} {}: that is the file that is read; write to another", option, out));
     return true;
 }
 
@@ -172,17 +172,19 @@ bool misnamed(const std::string &out, Content content, Terminal &terminal) {
     return false;
 }
 
-bool overwrites(const std::string &file, const std::string &out, Terminal &terminal) {
+bool overwrites(const std::string &file, const std::string &out, Terminal &terminal,
+                const char *option) {
     std::error_code none;
     if (file == "-" || out.empty() || out == "-" || !fs::equivalent(file, out, none)) return false;
-    return refuse_overwriting(out, terminal);
+    return refuse_overwriting(out, terminal, option);
 }
 
-bool overwrites(const std::vector<fs::path> &files, const std::string &out, Terminal &terminal) {
+bool overwrites(const std::vector<fs::path> &files, const std::string &out, Terminal &terminal,
+                const char *option) {
     std::error_code none;
     if (is_stream(out) || !fs::exists(out, none)) return false;
     for (const fs::path &file : files)
-        if (fs::equivalent(file, out, none)) return refuse_overwriting(out, terminal);
+        if (fs::equivalent(file, out, none)) return refuse_overwriting(out, terminal, option);
     return false;
 }
 

@@ -46,10 +46,11 @@ bool is_sums_name(const std::string &out);     // by its suffix, .sums
 bool misnamed(const std::string &out, Content content, Terminal &terminal);
 
 // Whether a result would be written over the very file that it is made from, or over one that the
-// scene reads; says so.
-bool overwrites(const std::string &file, const std::string &out, Terminal &terminal);
+// scene reads; says so. `option` named it.
+bool overwrites(const std::string &file, const std::string &out, Terminal &terminal,
+                const char *option = "-o");
 bool overwrites(const std::vector<std::filesystem::path> &files, const std::string &out,
-                Terminal &terminal);
+                Terminal &terminal, const char *option = "-o");
 
 // Whether `out` is a folder, or lies in none; says so. For results that take long to make.
 bool unwritable(const std::string &out, Terminal &terminal);

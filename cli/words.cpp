@@ -28,14 +28,19 @@ std::string read_pair(const std::string &word, int &first, int &second) {
     return "";
 }
 
+std::optional<double> read_coordinate(std::string_view word) {
+    const std::optional<double> number = parse_number(word);
+    return number && std::abs(*number) <= longest ? number : std::nullopt;
+}
+
 std::string read_point(const std::string &word, std::array<double, 3> &point) {
     std::string_view rest = word;
     for (std::size_t i = 0; i < 3; ++i) {
         std::size_t comma = i < 2 ? rest.find(',') : rest.size();
         std::optional<double> number =
-            comma == rest.npos ? std::nullopt : parse_number(rest.substr(0, comma));
-        if (!number || !std::isfinite(*number))
-            return fmt::format("a point is X,Y,Z, as 0,1.5,-2, not `{}`", word);
+            comma == rest.npos ? std::nullopt : read_coordinate(rest.substr(0, comma));
+        if (!number)
+            return fmt::format("a point is X,Y,Z, as 0,1.5,-2, none beyond 1e18, not `{}`", word);
         point[i] = *number;
         rest.remove_prefix(std::min(comma + 1, rest.size()));
     }
@@ -114,8 +119,8 @@ std::string read_frames(const std::string &word, FrameList &frames) {
     if (!good)
         return fmt::format(
             "frames are A..B (B left out), A..=B, with a step as 0..=240:2, a number, "
-            "or a list of these as 0..48,60, not `{}`",
-            word);
+            "or a list of these as 0..48,60, none above {}, not `{}`",
+            last_frame, word);
     std::ranges::sort(frames.numbers);
     const auto twice = std::ranges::adjacent_find(frames.numbers);
     if (twice != frames.numbers.end())

@@ -5,14 +5,18 @@
 #include "cli/command.h"
 
 #include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace fathom::cli {
 
 std::string read_pair(const std::string &word, int &first, int &second); // 1280x720: 1 to 65536
-std::string read_point(const std::string &word, std::array<double, 3> &point); // 0,1.5,-2: finite
+// A coordinate of a point: beyond 1e18 no number says where anything is.
+std::optional<double> read_coordinate(std::string_view word);
+std::string read_point(const std::string &word, std::array<double, 3> &point); // 0,1.5,-2
 // -1,-1,0,1,1,2: the least corner of a box, then the greatest.
 std::string read_box(const std::string &word, std::array<std::array<double, 3>, 2> &box);
 // 0..48, 0..=47, 0..=240:2, 7, and lists of them by commas: frames from 0 to 1,000,000.

@@ -149,6 +149,8 @@ std::string spelling_key(std::string_view name); // lower case, without spaces, 
 
 // A scalar as a number or as a switch, in any spelling that is read; nothing where it is neither.
 std::optional<double> number_of(const Value &value, double most = longest);
+// What a scalar that is none would have to be: "a number", or what about it is wrong.
+std::string wanted_number(const Value &value);
 std::optional<bool> switch_of(const Value &value);
 bool is_none(std::string_view word); // "<None>", "", "~"
 

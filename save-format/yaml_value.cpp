@@ -215,6 +215,28 @@ ParsedText parse_text(std::string_view text) {
     return parsed;
 }
 
+namespace {
+
+// In YAML 1.1: `010` is 8, which nobody means who writes lengths.
+bool is_octal(std::string_view text) {
+    return text.size() > 1 && text[0] == '0' && text.find_first_not_of("0123456789") == text.npos &&
+           text.find_first_not_of('0') != text.npos;
+}
+
+} // namespace
+
+std::string wanted_number(const Value &value) {
+    std::string_view text = value.text;
+    if (value.kind != Value::Kind::Scalar || !value.plain || text.empty()) return "a number";
+    if (text[0] == '-' || text[0] == '+') text.remove_prefix(1);
+    if (is_octal(text)) return "a number without a 0 before it, which YAML takes for octal";
+    const std::size_t digits = text.find_first_not_of("0123456789");
+    const bool is_number =
+        !text.empty() && digits != 0 &&
+        (digits == text.npos || text.find_first_not_of("0123456789.eE+-") == text.npos);
+    return is_number ? "a number up to " + format_shortest(longest) : "a number";
+}
+
 std::optional<double> number_of(const Value &value, double most) {
     if (value.kind != Value::Kind::Scalar || !value.plain || value.text.empty())
         return std::nullopt;
@@ -227,6 +249,7 @@ std::optional<double> number_of(const Value &value, double most) {
                         : std::numeric_limits<double>::infinity();
     if (text.empty() || !((text[0] >= '0' && text[0] <= '9') || text[0] == '.'))
         return std::nullopt;
+    if (is_octal(text)) return std::nullopt;
     auto number = parse_number(text[0] == '.' ? "0" + std::string(text) : std::string(text));
     if (!number && text.back() == '.') number = parse_number(text.substr(0, text.size() - 1));
     if (!number || std::abs(*number) > most) return std::nullopt;

@@ -32,6 +32,7 @@ bool convert(const PropertyType &type, const Value &value, Property &property,
     case PropertyKind::Whole: {
         wanted = type.kind == PropertyKind::Whole ? "a whole number" : "a number";
         const auto number = number_of(value);
+        if (!number && type.kind == PropertyKind::Number) wanted = wanted_number(value);
         if (!number || (type.kind == PropertyKind::Whole && *number != std::floor(*number)))
             return false;
         wanted += ", " + limits(type);
@@ -47,21 +48,20 @@ bool convert(const PropertyType &type, const Value &value, Property &property,
         static constexpr const char *axes[] = {"X", "Y", "Z"};
         bool some = false;
         for (int axis = 0; axis < 3; ++axis) {
-            std::optional<double> number = type.fallback;
+            const Value *part = &value;
             if (value.kind == Value::Kind::Mapping) {
-                if (const Value *part = value.find(axes[axis])) {
-                    number = number_of(*part);
-                    some = true;
-                }
+                part = value.find(axes[axis]);
             } else if (value.kind == Value::Kind::Sequence) {
                 if (value.items.size() != 3) return false;
-                number = number_of(value.items[static_cast<std::size_t>(axis)]);
-                some = true;
-            } else {
-                number = number_of(value);
-                some = true;
+                part = &value.items[static_cast<std::size_t>(axis)];
             }
-            if (!number) return false;
+            const std::optional<double> number = part ? number_of(*part) : type.fallback;
+            some = some || part;
+            if (!number) {
+                if (const std::string what = wanted_number(*part); what != "a number")
+                    wanted += ", each " + what;
+                return false;
+            }
             if (!within(type, *number)) {
                 wanted = "numbers, each " + limits(type);
                 return false;

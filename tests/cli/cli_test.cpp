@@ -297,7 +297,41 @@ TEST_CASE("no result is written over what it is made from") {
         CHECK(result.exit == 2);
         CHECK(contains(result.err, "that is the file that is read"));
     }
+    const Result reflected = shell(folder, "fathom compile good.sdf --reflect good.sdf -o a.frag");
+    CHECK(reflected.exit == 2);
+    CHECK(contains(reflected.err, "--reflect good.sdf: that is the file that is read"));
+    CHECK_FALSE(fs::exists(folder / "a.frag"));
     CHECK(shell(folder, "cat good.sdf").out == "sphere(1)\n");
+}
+
+TEST_CASE("a file that may not grow further is an error that is told") {
+    Scenes folder;
+    const Result result = shell(folder, "(ulimit -f 1; fathom compile good.sdf -o big.frag)");
+    CHECK(result.exit == 3);
+    CHECK(contains(result.err, "cannot write `big.frag`: file too large"));
+    CHECK_FALSE(fs::exists(folder / "big.frag"));
+}
+
+TEST_CASE("words that have no place are told as such") {
+    Scenes folder;
+    const auto said = [&](const std::string &line) {
+        const Result result = shell(folder, "fathom " + line);
+        INFO(line);
+        CHECK(result.exit == 2);
+        return result.err;
+    };
+    CHECK(contains(said("eval good.sdf a b c"), "a coordinate is a number, as 1.5, not beyond"));
+    for (const char *number : {"nan", "inf", "1e999", "1e30", "1,2"})
+        CHECK(contains(said(std::string("eval good.sdf 0 ") + number + " 0"),
+                       std::string("not `") + number + "`"));
+    CHECK(contains(said("eval good.sdf --at 0,1e30,0"), "none beyond 1e18"));
+    CHECK(shell(folder, "printf '1 nan 0' | fathom eval good.sdf --points -").exit == 2);
+    CHECK(contains(said("explain loop-limit x"), "`x` is a word too many"));
+    CHECK(contains(said("check good.sdf --stritc-proof"),
+                   "there is no option `--stritc-proof`; did you mean `--strict-proof`?"));
+    CHECK(contains(said("check good.sdf -I none"), "there is no folder `none`"));
+    CHECK(contains(said("render good.sdf --frames 0..99999999999 -o a.png"), "none above 1000000"));
+    CHECK(contains(said("render good.sdf --jobs many -o a.png"), "not `many`"));
 }
 
 TEST_CASE("a reader that leaves ends the program quietly, a full disk does not") {

@@ -193,9 +193,17 @@ TEST_CASE("what is wrong in the content is said with its place, and the rest loa
     CHECK(said("[Sphere, a, {Radius: .nan}]") ==
           "5:22 yaml-value `Radius` wants a number, not `.nan`\n");
     CHECK(said("[Sphere, a, {Radius: 1e39}]") ==
-          "5:22 yaml-value `Radius` wants a number, not `1e39`\n");
+          "5:22 yaml-value `Radius` wants a number up to 1e+18, not `1e39`\n");
     CHECK(said("[Sphere, a, {Radius: 1e20}]") ==
-          "5:22 yaml-value `Radius` wants a number, not `1e20`\n");
+          "5:22 yaml-value `Radius` wants a number up to 1e+18, not `1e20`\n");
+    CHECK(said("[Sphere, a, {Radius: 010}]") ==
+          "5:22 yaml-value `Radius` wants a number without a 0 before it, which YAML takes for "
+          "octal, not `010`\n");
+    CHECK(said("[Sphere, a, {Radius: " + std::string(400, '9') + "}]") ==
+          "5:22 yaml-value `Radius` wants a number up to 1e+18\n");
+    CHECK(said("[Box, a, {Size: {X: 1, Y: -07}}]") ==
+          "5:17 yaml-value `Size` wants a mapping of X, Y and Z to numbers, each a number without "
+          "a 0 before it, which YAML takes for octal, not `{X: 1, Y: -07}`\n");
     CHECK(said("[Sphere, a, {Radius: -1}]") ==
           "5:22 yaml-value `Radius` wants a number, above 0, not `-1`\n");
     CHECK(said("[Sphere, a, {Radius: '1'}]") ==
