@@ -412,7 +412,7 @@ static void report_labelled(const ir::Scene &scene, Numbers &numbers, const Tree
 std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics,
                         const ExportOptions &options) {
     KeptItems kept = read_kept(scene.kept);
-    Budget budget(scene, options.limits, diagnostics);
+    Budget budget(options.limits, diagnostics);
     const FileNames files(options, diagnostics);
     Numbers numbers(scene, budget);
     Appearances appearances(scene, numbers, files, std::move(kept.textures),

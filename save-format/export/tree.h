@@ -18,7 +18,7 @@ namespace fathom::save {
 // What an export may still take of the limits; the one error where that is not enough.
 class Budget {
   public:
-    Budget(const ir::Scene &scene, const Limits &limits, Diagnostics &diagnostics);
+    Budget(const Limits &limits, Diagnostics &diagnostics);
     // Counts steps and bytes; false from there on where they are too many.
     bool take(std::size_t steps, std::size_t bytes);
     bool spent() const { return spent_; }

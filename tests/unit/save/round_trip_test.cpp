@@ -300,7 +300,7 @@ TEST_CASE("an export of shared shapes counts against the limits", "[save]") {
     CHECK(answer(usual.work, usual.memory) == "");
     CHECK(answer(20'000, 100) == "");
     CHECK(answer(2'000, usual.memory) == "loop-limit");
-    CHECK(answer(usual.work, 20) == "memory-limit");
+    CHECK(answer(usual.work, 10) == "memory-limit");
 }
 
 TEST_CASE("paths go out as the save file sees them", "[save]") {
