@@ -6,6 +6,7 @@
 #include "base/diagnostic.h"
 #include "base/single.h"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <utility>
@@ -151,6 +152,12 @@ std::string spelling_key(std::string_view name); // lower case, without spaces, 
 std::optional<double> number_of(const Value &value, double most = longest);
 // What a scalar that is none would have to be: "a number", or what about it is wrong.
 std::string wanted_number(const Value &value);
+// How far a map displaces, and a map's scale, {X, Y} above 0; what is neither counts as its default.
+constexpr double largest_amount = 1e6;
+inline std::optional<double> legal_amount(const Value &value) {
+    return number_of(value, largest_amount);
+}
+std::optional<std::array<double, 2>> legal_scale(const Value &value);
 std::optional<bool> switch_of(const Value &value);
 bool is_none(std::string_view word); // "<None>", "", "~"
 

@@ -256,6 +256,18 @@ std::optional<double> number_of(const Value &value, double most) {
     return flushed(negative ? -*number : *number);
 }
 
+std::optional<std::array<double, 2>> legal_scale(const Value &value) {
+    std::array<double, 2> parts;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Value *part =
+            value.kind == Value::Kind::Mapping ? value.find(i == 0 ? "X" : "Y") : nullptr;
+        const auto number = part ? number_of(*part) : std::nullopt;
+        if (!number || *number <= 0 || *number >= 1e9) return std::nullopt;
+        parts[i] = *number;
+    }
+    return parts;
+}
+
 std::optional<bool> switch_of(const Value &value) {
     if (value.kind != Value::Kind::Scalar) return std::nullopt;
     const std::string key = spelling_key(value.text);

@@ -54,12 +54,8 @@ std::string texture_of(const Value &item, std::string_view key) {
 
 std::array<double, 2> scale_of(const Value &item, std::string_view key) {
     const Value *scale = entry(item, key);
-    std::array<double, 2> result{1, 1};
-    for (std::size_t i = 0; scale && i < 2; ++i) {
-        const Value *part = scale->find(i == 0 ? "X" : "Y");
-        result[i] = part ? number_of(*part).value_or(1) : 1;
-    }
-    return result;
+    return scale ? legal_scale(*scale).value_or(std::array<double, 2>{1, 1})
+                 : std::array<double, 2>{1, 1};
 }
 
 bool same_color(const Value *value, const std::array<double, 3> &color) {
@@ -162,7 +158,7 @@ bool Appearances::displaces(const std::string &material, const ir::DisplacementM
     if (name.empty() || file == textures_.end()) return false;
     const std::string &image = scene_.images[static_cast<std::size_t>(map.map.image)].name;
     return image.ends_with(file->second.text) &&
-           (amount ? number_of(*amount).value_or(0.1) : 0.1) == by &&
+           (amount ? legal_amount(*amount).value_or(0.1) : 0.1) == by &&
            scale_of(item, "Displacement Scale") == map.map.scale;
 }
 

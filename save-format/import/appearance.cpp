@@ -84,14 +84,7 @@ double number_or(Importer &in, const Value *value, const char *what, double fall
 // {X, Y}, as the language's argument: one number where both are equal.
 std::string scale_text(Importer &in, const Value *value, const char *what) {
     if (!value) return "1";
-    double part[2] = {1, 1};
-    bool legal = value->kind == Value::Kind::Mapping;
-    for (int i = 0; i < 2 && legal; ++i) {
-        const Value *component = value->find(i == 0 ? "X" : "Y");
-        const auto number = component ? number_of(*component) : std::nullopt;
-        legal = number && *number > 0 && *number < 1e9;
-        if (legal) part[i] = *number;
-    }
+    const auto legal = legal_scale(*value);
     if (!legal) {
         in.report
             .content(value->span, std::string("`") + what +
@@ -99,8 +92,8 @@ std::string scale_text(Importer &in, const Value *value, const char *what) {
             .note("its default stands in, and the value is kept for an export");
         return "1";
     }
-    return part[0] == part[1] ? sdf_number(part[0])
-                              : "[" + sdf_number(part[0]) + ", " + sdf_number(part[1]) + "]";
+    const auto [x, y] = *legal;
+    return x == y ? sdf_number(x) : "[" + sdf_number(x) + ", " + sdf_number(y) + "]";
 }
 
 constexpr std::string_view material_properties[] = {"Name",
@@ -188,8 +181,8 @@ void read_material(Importer &in, const TakenValue &taken) {
         call += ", texture: " + map;
         if (texture_scale != "1") call += ", texture_scale: " + texture_scale;
     }
-    const double amount =
-        number_or(in, all.find("Displacement Amount"), "Displacement Amount", 0.1, -1e6, 1e6);
+    const double amount = number_or(in, all.find("Displacement Amount"), "Displacement Amount", 0.1,
+                                    -largest_amount, largest_amount);
     const std::string displacement_scale =
         scale_text(in, all.find("Displacement Scale"), "Displacement Scale");
     if (const std::string map = texture("Displacement Map"); !map.empty() && amount != 0) {

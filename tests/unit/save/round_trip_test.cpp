@@ -265,6 +265,27 @@ TEST_CASE("what a scene exports, it exports again to the same bytes", "[save]") 
     }
 }
 
+TEST_CASE("a material's displacement with a value that cannot be is not added at each trip",
+          "[save]") {
+    const std::string look = "- 0.3\n- {bumps: bumps.png}\n- - - {Name: Rough, Diffuse: {Red: 1, "
+                             "Green: 2, Blue: 3}, Specular: {Red: 4, Green: 5, Blue: 6}}\n"
+                             "    - {Displacement Map: bumps, ";
+    for (const std::string wrong :
+         {"Displacement Scale: {X: 0.Y, Y: 0.5}", "Displacement Scale: {X: 2, Y: -1}",
+          "Displacement Scale: 2", "Displacement Amount: 1e7"}) {
+        std::string yaml = look + wrong +
+                           "}\n- [Generic, Field, {Children: [[Sphere, a, {Material: "
+                           "Rough}]]}]\n";
+        for (int trip = 0; trip < 2; ++trip) {
+            const CheckedText checked = check_text(import_text(yaml).result.sdf);
+            REQUIRE(checked.errors() == "");
+            yaml = export_text(checked.checked.scene);
+            INFO(yaml);
+            CHECK(yaml.find("- Displacement\n") == std::string::npos);
+        }
+    }
+}
+
 TEST_CASE("children that are given twice, once as none, are not lost on the way", "[save]") {
     std::string exported =
         "---\n- 0.3\n- {}\n- []\n"
