@@ -282,8 +282,8 @@ bool Builder::lisp_call(Index at) {
     Index open = enclosing(at);
     const Index inner = open + 1;
     if (inner + 1 != at || !is_form(open)) return false;
-    for (Index around = enclosing(open);
-         around < open && match(around) > open && is_form(around); around = enclosing(open))
+    for (Index around = enclosing(open); around < open && match(around) > open && is_form(around);
+         around = enclosing(open))
         open = around;
     if (lisp_binding(open)) return true;
     std::string call = lisp_form(open);
