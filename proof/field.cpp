@@ -330,6 +330,25 @@ std::optional<double> unwound_bound(Flattening &context, const Ranges &ranges, N
 
 namespace {
 
+constexpr double beyond_flat = 1e4; // a bound by parts, over the slope seen
+
+// The steepest slope seen with the params in the middle of their ranges, and the time at its begin.
+double seen_once(Flattening &own, const Ranges &all, NodeId field, const Domain &domain) {
+    Ranges once = all;
+    once.time = once.time.lo;
+    for (auto &param : once.params)
+        for (Interval &x : param) x = x.finite() ? x.middle() : 0.0;
+    const Tape tape = flatten(own, field);
+    Machine machine(tape, once);
+    Dice dice{0x5eed};
+    double most = 0;
+    for (int k = 0; k < 24; ++k) {
+        machine.run(at_point(some_point(domain.box, dice)));
+        if (machine.norm() != infinity) most = std::max(most, machine.norm());
+    }
+    return most;
+}
+
 // By all of the field, and where that is loose from coordinates that turn.
 FieldBound bound_of_all(Flattening &own, const Ranges &all, NodeId copy, const Domain &domain,
                         const Budget &budget) {
@@ -369,6 +388,9 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
         const bool refused = !std::isfinite(out.lipschitz);
         const auto parts = bound_by_parts(own, all, copy, domain, budget, refused);
         if (!parts || !(parts->lipschitz < out.lipschitz)) return out;
+        // What is rounding beside so steep a part may be all of a field that is flat.
+        if (refused && parts->lipschitz > beyond_flat * seen_once(own, all, copy, domain))
+            return out;
         const double sampled = std::min(out.sampled, parts->lipschitz);
         out = refused ? *parts : out;
         out.lipschitz = parts->lipschitz;
