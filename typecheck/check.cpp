@@ -82,11 +82,6 @@ void apply(Interpreter &ev, const Setting &s) {
 
 // Of a flat scene.
 void add_flat(Interpreter &ev, const Value &v, Span span, std::vector<ir::ShapeId> &shapes) {
-    if (ev.scene.shapes[shape_of(v)].kind == ir::ShapeKind::Empty) {
-        ev.scene.top_level.push_back({shape_of(v), span});
-        shapes.push_back(shape_of(v));
-        return;
-    }
     if (v.size != 2) {
         report(ev, Code::WrongPlace, span, "this is a solid, and a flat scene is of flat shapes")
             .help("`fathom slice --z 0` cuts solids; without a height it draws flat shapes");

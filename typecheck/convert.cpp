@@ -88,12 +88,6 @@ static Value vector_of_list(Interpreter &ev, const Value &v) {
 
 static std::optional<Value> as_shape(Interpreter &ev, const Value &v, const lang::TypeExpr &type) {
     if (v.kind != ValueKind::Shape) return std::nullopt;
-    if (ev.scene.shapes[shape_of(v)].kind == ir::ShapeKind::Empty) {
-        const int dims = type.named == lang::TypeName::Shape2  ? 2
-                         : type.named == lang::TypeName::Shape ? 3
-                                                               : v.size;
-        return shape_value(shape_of(v), dims);
-    }
     if (type.named == lang::TypeName::Shape && v.size != 3) return std::nullopt;
     if (type.named == lang::TypeName::Shape2 && v.size != 2) return std::nullopt;
     if (!type.lipschitz) return v;
@@ -372,10 +366,7 @@ std::optional<ir::NodeId> want_color_node(Interpreter &ev, const Value &v, Span 
 
 std::optional<ir::ShapeId> want_shape(Interpreter &ev, const Value &v, Span place, What what,
                                       int dims) {
-    if (v.kind == ValueKind::Shape &&
-        (dims == 0 || v.size == dims ||
-         ev.scene.shapes[shape_of(v)].kind == ir::ShapeKind::Empty)) // flat or not, it is nowhere
-        return shape_of(v);
+    if (v.kind == ValueKind::Shape && (dims == 0 || v.size == dims)) return shape_of(v);
     if (v.kind == ValueKind::Shape && dims == 3) {
         report(ev, Code::FlatShape, place,
                fmt::format("{} wants a solid, this is a flat shape", what))

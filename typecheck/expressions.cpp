@@ -78,8 +78,7 @@ static Value combine(Interpreter &ev, ir::ShapeKind kind, const std::vector<Valu
                                                     : "conditions are joined with `and`");
             return poison();
         }
-        const bool empty = ev.scene.shapes[shape_of(values[i])].kind == ir::ShapeKind::Empty;
-        if (dims != 0 && values[i].size != dims && !empty) {
+        if (dims != 0 && values[i].size != dims) {
             report(ev, Code::FlatShape, places[i],
                    dims == 2 ? "a solid is combined with a flat shape"
                              : "a flat shape is combined with a solid")
@@ -88,14 +87,22 @@ static Value combine(Interpreter &ev, ir::ShapeKind kind, const std::vector<Valu
         }
         auto shape = want_shape(ev, values[i], places[i], "this combination", dims);
         if (!shape) return poison();
-        if (!empty) dims = values[i].size;
+        if (ev.scene.shapes[*shape].kind != ir::ShapeKind::Empty) dims = values[i].size;
         children.push_back(*shape);
     }
     if (children.empty()) return poison();
     if (dims == 0) dims = 3;
     if (kind == ir::ShapeKind::Union)
         return shape_value(unite(ev, std::move(children), dims, place), dims);
-    return shape_value(intersect(ev, std::move(children), dims, place), dims);
+    for (ir::ShapeId c : children) // the part common with nothing is nothing
+        if (ev.scene.shapes[c].kind == ir::ShapeKind::Empty) return shape_value(c, dims);
+    if (children.size() == 1) return shape_value(children[0], dims);
+    ir::Shape s;
+    s.kind = kind;
+    s.dims = static_cast<std::uint8_t>(dims);
+    s.children = std::move(children);
+    s.origin = place;
+    return shape_value(ev.scene.shapes.add(std::move(s)), dims);
 }
 
 // `sphere(1) && box(1)`: the text was read as conditions, with what there is to say of `&&`.
@@ -479,7 +486,8 @@ static Value eval_kind(Interpreter &ev, const File &ast, lang::ExprId id, std::u
 
 Value eval(Interpreter &ev, const File &ast, lang::ExprId id, std::uint32_t frame) {
     if (!spend(ev, ast.exprs[id].span)) return poison();
-    const char here = 0; // the stack grows downwards, to the end that the system set
+    const char here =
+        0; // the stack grows downwards, and its end is that of the system that runs us
     if (ev.depth >= max_depth || &here < ev.stack_end) {
         report(ev, Code::RecursionLimit, ast.exprs[id].span, "this nests too deep to be evaluated");
         return poison();

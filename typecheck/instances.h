@@ -25,7 +25,5 @@ std::optional<ir::ShapeId> smooth_instances(Interpreter &ev, const std::vector<i
                                             ir::NodeId k, int dims);
 // The union of shapes, with tables where that is possible.
 ir::ShapeId unite(Interpreter &ev, std::vector<ir::ShapeId> shapes, int dims, Span origin);
-// What all have in common, of some shapes; nothing where one is nothing (builtins/nothing.cpp).
-ir::ShapeId intersect(Interpreter &ev, std::vector<ir::ShapeId> shapes, int dims, Span origin);
 
 } // namespace fathom::typecheck

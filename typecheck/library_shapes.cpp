@@ -12,7 +12,6 @@ Value library_shape(Interpreter &ev, ir::Library library, const Value &body, Spa
     ir::ShapeId child = shape_of(body);
     // a body that only makes claims is this very call: keep its claims under the call's numbers
     const ir::Shape &inner = ev.scene.shapes[child];
-    if (inner.kind == ir::ShapeKind::Empty) return body; // nothing has no name
     if (inner.kind == ir::ShapeKind::Library &&
         ev.scene.shapes.libraries[inner.payload].arguments.empty() &&
         ev.scene.shapes.libraries[inner.payload].name == library.name) {

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace fathom::typecheck {
@@ -18,7 +17,6 @@ using ir::ShapeKind;
 using ir::Type;
 
 Value added(Interpreter &ev, ir::Shape shape, const CallSite &site, int dims) {
-    if (const auto nothing = made_of_nothing(ev, shape)) return shape_value(*nothing, dims);
     shape.dims = static_cast<std::uint8_t>(dims);
     shape.origin = site.call;
     // inside the library the user's own call is the place to show
@@ -34,6 +32,9 @@ Value added(Interpreter &ev, ir::Shape shape, const CallSite &site, int dims) {
 }
 
 bool given(const Value &v) { return v.kind != ValueKind::None; }
+bool is_empty(Interpreter &ev, ir::ShapeId id) {
+    return ev.scene.shapes[id].kind == ShapeKind::Empty;
+}
 
 std::optional<ir::ShapeId> first_shape(Interpreter &ev, const CallSite &site,
                                        const std::vector<Value> &args, int dims) {
@@ -175,11 +176,11 @@ static Value cached_call(Interpreter &ev, const CallSite &site, std::vector<Valu
     ++ev.in_field;
     Value v = call_with(ev, args[0], {from_node(ev, p)}, site.arg(0));
     --ev.in_field;
-    if (is_poison(v)) return v;
     if (const auto broken = put_conditions(ev, take_conditions(ev, demanded), {{p, g.point()}})) {
         report(ev, Code::BadArgument, broken->at, broken->wanted);
         return poison();
     }
+    if (is_poison(v)) return v;
     bool vector =
         is_numeric(v) && (numeric_type(ev, v) == Type::Vec3 || numeric_type(ev, v) == Type::Vec4);
     if (!vector && !is_scalar(ev, v)) {
@@ -235,7 +236,8 @@ static Value intersection_call(Interpreter &ev, const CallSite &site, std::vecto
     int dims = 0;
     auto shapes = shapes_argument(ev, site, args[0], 0, dims);
     if (!shapes) return poison();
-    leave_out_everything(ev, *shapes);
+    for (ir::ShapeId s : *shapes)
+        if (is_empty(ev, s)) return shape_value(s, dims == 0 ? 3 : dims);
     return n_ary(ev, site, ShapeKind::Intersection, std::move(*shapes), dims);
 }
 
@@ -268,8 +270,6 @@ static Value blend_call(Interpreter &ev, const CallSite &site, std::vector<Value
     if (!profile || !r || !n || !shapes) return poison();
     std::erase_if(*shapes, [&](ir::ShapeId s) { return is_empty(ev, s); });
     if (dims == 0) dims = 3;
-    for (ir::ShapeId s : *shapes)
-        if (is_everything(ev, s)) return shape_value(s, dims);
     ir::Profile p = *profile == "smooth"    ? ir::Profile::Smooth
                     : *profile == "round"   ? ir::Profile::Round
                     : *profile == "chamfer" ? ir::Profile::Chamfer
@@ -306,8 +306,7 @@ static std::optional<Pair> pair_argument(Interpreter &ev, const CallSite &site,
     auto a = want_shape(ev, args[at], site.arg(at), quoted(site.name));
     auto b = want_shape(ev, args[at + 1], site.arg(at + 1), quoted(site.name));
     if (!a || !b) return std::nullopt;
-    if (is_empty(ev, *a)) return Pair{*a, *b, args[at + 1].size};
-    if (args[at].size != args[at + 1].size && !is_empty(ev, *b)) {
+    if (args[at].size != args[at + 1].size) {
         report(ev, Code::FlatShape, site.call, "a solid and a flat shape cannot be combined");
         return std::nullopt;
     }

@@ -173,7 +173,6 @@ static Value taper_call(Interpreter &ev, const CallSite &site, std::vector<Value
     auto ratio = want_scalar_node(ev, args[1], site.arg(1), "`ratio`");
     auto axis = axis_argument(ev, site, args[2], 2);
     if (!s || !ratio || !axis) return poison();
-    if (is_empty(ev, *s)) return args[0]; // it has no ends, and needs none
     std::optional<ir::NodeId> ends[2];
     for (std::size_t i = 0; i < 2; ++i) {
         if (!given(args[3 + i])) continue;
