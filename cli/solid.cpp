@@ -105,7 +105,6 @@ Exit make_frames(const SolidArguments &solid, const std::string &out, Terminal &
         SolidArguments moment = solid;
         if (film.empty()) return moment;
         moment.time = solid.time + film[k] / solid.frame_rate;
-        moment.until = solid.time + film.back() / solid.frame_rate;
         for (Definition &value : swept(solid.sweeps, film, film[k]))
             moment.scene.overrides.push_back(std::move(value));
         return moment;
@@ -114,14 +113,16 @@ Exit make_frames(const SolidArguments &solid, const std::string &out, Terminal &
         if (unwritable(file_of(k), terminal)) return device_error;
     const Interrupts interrupts;
     Progress progress(ProgressFormat::Bar, count, terminal);
-    Solid opened = open_solid(at(0), terminal);
+    SolidArguments all = at(0);
+    all.until = at(count - 1).time;
+    Solid opened = open_solid(all, terminal);
     if (!opened.scene) return opened.exit;
     if (!in_proved_time(opened.scene->facts(), at(0).time, at(count - 1).time, terminal))
         return usage_error;
     for (std::size_t k = 0; k < count; ++k)
         if (overwrites(opened.files, file_of(k), terminal)) return usage_error;
     for (std::size_t k = 0; k < count; ++k) {
-        if (k > 0 && !solid.sweeps.empty()) opened = open_solid(at(k), terminal, true);
+        if (!film.empty()) opened = open_solid(at(k), terminal, true); // as if it were made alone
         if (!opened.scene) return opened.exit;
         SolidFrame frame{*opened.scene, at(k), file_of(k), opened.files, std::nullopt, {}};
         if (!film.empty()) frame.number = film[k];

@@ -125,7 +125,7 @@ struct Shortener {
 };
 
 // What `run_over` does, in parts: between them the ranges of what was computed so far may be read, and
-// narrowed (mesh/held.h). `steps`: some of a tape's, those before them run.
+// narrowed. `steps`: some of a tape's, those before them run.
 void enter_boxes(const PruneProgram &parts, Shortener &shortener, const Boxes &boxes);
 void run_steps(const PruneProgram &parts, Shortener &shortener, const Selection &steps);
 void take_results(const PruneProgram &parts, Shortener &shortener);
