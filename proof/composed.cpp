@@ -18,8 +18,8 @@ using ir::rounding::infinity;
 using ir::rounding::times;
 using ir::rounding::up;
 
-constexpr std::size_t max_nodes_composed = 2'000; // of a field that is looked into
-constexpr std::size_t max_coordinates = 28;       // expressions that a vector may be made of
+constexpr std::size_t max_nodes_composed = 700; // of a field that is looked into
+constexpr std::size_t max_coordinates = 28;     // expressions that a vector may be made of
 constexpr std::size_t max_affine_tries = 8;
 constexpr std::size_t max_parts = 64;           // of a field
 constexpr std::size_t max_work = 5'000'000;     // for one field that is refused
@@ -208,10 +208,11 @@ class Parts {
     }
 
     std::optional<FieldBound> of(NodeId field, std::size_t allowed) {
+        field = ir::without_calls(graph_, field, max_nodes_composed).root;
+        if (!is_small(field)) return {};
         const bool first = budget_.levels + 1 == Budget{}.levels;
         const std::size_t left = context_.work.left, most = std::min(left / 4, allowed);
         if (first) context_.work.left = most;
-        field = ir::without_calls(graph_, field, max_nodes_composed).root;
         std::optional<FieldBound> out = through_vector(field);
         if (!out && first) {
             look_below(field);
@@ -222,6 +223,19 @@ class Parts {
     }
 
   private:
+    // A field is looked at many times over, and the least of that costs as much as its square.
+    bool is_small(NodeId field) const {
+        std::vector<NodeId> todo{field};
+        std::unordered_set<NodeId> seen;
+        while (!todo.empty() && seen.size() <= max_nodes_composed) {
+            const NodeId id = todo.back();
+            todo.pop_back();
+            if (seen.insert(id).second)
+                todo.insert(todo.end(), graph_.args(id).begin(), graph_.args(id).end());
+        }
+        return seen.size() <= max_nodes_composed;
+    }
+
     // The bound of an expression that reads the point through one vector.
     std::optional<FieldBound> through_vector(NodeId id) {
         if (read_.below(id).is_affine) return {};
