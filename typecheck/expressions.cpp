@@ -1,11 +1,10 @@
 // Expressions to values.
 #include "base/srgb.h"
+#include "ir/maps.h"
 #include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
 #include "typecheck/places.h"
 #include "typecheck/remedies.h"
-
-#include "ir/maps.h"
 
 #include <fmt/format.h>
 

@@ -132,30 +132,6 @@ TEST_CASE("what is drawn or evaluated is proved at the values given, what is che
     CHECK(fs::exists(folder / "m_0002.png"));
 }
 
-TEST_CASE("a mesh, a measure and a check of one moment are proved for that moment") {
-    const ScratchFolder folder;
-    folder.write("power.sdf", "implicit(p => length(p) - 1 - 0.1 * pow(max(p.x, 0), time), "
-                              "within: ball(2))\n");
-    folder.write("waves.sdf", "param a = 0.0 in 0.0..20.0\n"
-                              "sphere(6).displace(p => a * sin(p.x) * sin(p.y) * sin(p.z))\n");
-    const auto exit = [&](const std::string &words) {
-        return shell(folder, "fathom " + words).exit;
-    };
-    CHECK(exit("check power.sdf") == 1);
-    CHECK(exit("check power.sdf --time 2") == 0);
-    CHECK(exit("check power.sdf --time 0.5") == 1);
-    folder.write("short.sdf", "box(1).displace(p => 0.1 * sin(p.x * (1 + time)))\n"
-                              "render(time: 10)\n");
-    CHECK(exit("check short.sdf --time 10") == 0);
-    CHECK(exit("check short.sdf --time 10.5") == 2);
-    CHECK(contains(shell(folder, "fathom check waves.sdf --time 0").err, "lipschitz 1\n"));
-    CHECK(exit("mesh power.sdf --resolution 12 --time 0.5 -o a.stl") == 1);
-    CHECK(exit("mesh power.sdf --resolution 12 --time 2 -o a.stl") == 0);
-    CHECK(exit("mesh power.sdf --resolution 12 --time 2 --frames 0..3 -o f.stl") == 0);
-    CHECK(exit("measure power.sdf --resolution 12 --time 2") == 0);
-    CHECK(exit("slice power.sdf --resolution 12 --time 2 --z 0 -o a.svg") == 0);
-}
-
 TEST_CASE("the exit status tells what went wrong") {
     Scenes folder;
     CHECK(shell(folder, "fathom check good.sdf").exit == 0);

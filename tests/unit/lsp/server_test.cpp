@@ -262,12 +262,12 @@ TEST_CASE("messages are cut by their lengths") {
 
 TEST_CASE("hover on an error says the point and the witness") {
     Client client;
-    const auto said = [&](const std::string &text) {
+    const auto said = [&](const std::string &text, int column = 3) {
         client.open(text);
-        const Json hover = client.result("textDocument/hover", Client::at(0, 3));
+        const Json hover = client.result("textDocument/hover", Client::at(0, column));
         return hover.at("contents").at("value").get<std::string>();
     };
-    const std::string jump = said("implicit(p => p.z + step(0.3, p.x), within: ball(2))\n");
+    const std::string jump = said("implicit(p => p.z + step(0.3, p.x), within: ball(2))\n", 21);
     CHECK(jump.find("jumps near [0.3") != std::string::npos);
     CHECK(jump.find("it is ") != std::string::npos); // two values at two points
     CHECK(jump.find(" at [0.3") != std::string::npos);
