@@ -1,9 +1,11 @@
 // Answers to the forms that people bring from GLSL, OpenSCAD, Python and C: each says what to write
 // instead, with the edit where that is mechanical. What no other language has either: failures.cpp.
+#include "base/text.h"
 #include "lang/builder.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <unordered_set>
 
 namespace fathom::lang {
@@ -79,6 +81,20 @@ void Builder::settle_foreign_names() {
     }
 }
 
+// `range` ends before its end, and these languages at it where a step meets it.
+static std::string range_up_to(const std::string &from, const std::string &to,
+                               const std::string &by) {
+    const auto a = parse_number(from), b = parse_number(to), step = parse_number(by);
+    std::string end = to + " + 0.001 * " + by;
+    if (a && b && step && *step != 0) {
+        const double last = *a + std::floor((*b - *a) / *step + 1e-9) * *step;
+        const auto is_whole = [](double x) { return x == std::floor(x); };
+        const bool whole = is_whole(*a) && is_whole(*b) && is_whole(*step);
+        end = format_shortest(whole ? last + (*step > 0 ? 1 : -1) : last + *step / 2);
+    }
+    return "range(" + from + ", " + end + ", " + by + ")";
+}
+
 // -- loops ---------------------------------------------------------------------------------------
 
 // `for (…)` with what stands in the parentheses: `i in list`, `i = [0:8]`, `int i = 0; i < 8; i++`.
@@ -129,8 +145,7 @@ bool Builder::foreign_loop(Index at) {
         const std::string from = inside(value + 1, one);
         if (two == end) return propose(name + " in " + from + "..=" + inside(one + 1, end));
         const std::string by = inside(one + 1, two);
-        return propose(name + " in range(" + from + ", " + inside(two + 1, end) + " + " + by +
-                       ", " + by + ")");
+        return propose(name + " in " + range_up_to(from, inside(two + 1, end), by));
     }
     const Index test = end_value + 1, end_test = find(test, close, Tok::End);
     const bool below = kind(test + 1) == Tok::Less, upto = kind(test + 1) == Tok::LessEqual;
@@ -141,8 +156,9 @@ bool Builder::foreign_loop(Index at) {
     if (by_one) return propose(name + " in " + from + (below ? ".." : "..=") + to);
     if (kind(count + 1) != Tok::PlusAssign) return true;
     const std::string by = inside(count + 2, close);
-    return propose(name + " in range(" + from + ", " + to + (below ? "" : " + " + by) + ", " + by +
-                   ")");
+    return propose(
+        name + " in " +
+        (below ? "range(" + from + ", " + to + ", " + by + ")" : range_up_to(from, to, by)));
 }
 
 // -- declarations --------------------------------------------------------------------------------

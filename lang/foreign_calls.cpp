@@ -46,12 +46,18 @@ std::string Builder::transform_text(Index name) const {
         const std::string_view word = text(i);
         const bool in_degrees = rotate && angle && kind(i) == Tok::Number && word != "0" &&
                                 word.find_first_not_of("0123456789.") == std::string_view::npos;
+        const bool alone =
+            kind(i) == Tok::Name &&
+            is_one_of(kind(i - 1), {Tok::Open, Tok::FreshOpen, Tok::ListOpen, Tok::Comma}) &&
+            is_one_of(kind(i + 1), {Tok::Close, Tok::ListClose, Tok::Comma});
         if (assign)
             out += token(i).end < token(i + 1).begin ? ":" : ": ";
         else if (color && kind(i) == Tok::String)
             out += word.substr(1, word.size() - 2);
         else
-            out += std::string(word) + (in_degrees ? "deg" : "");
+            out += std::string(word) + (in_degrees                 ? "deg"
+                                        : rotate && angle && alone ? " * 1deg"
+                                                                   : "");
         end = token(i).end;
     }
     return out;

@@ -88,7 +88,7 @@ TEST_CASE("forms of other languages are answered with our own") {
         {"let t = True", "foreign-syntax", "let t = true"},
         {"let t = None", "foreign-syntax", ""},
         {"for (i = [0:8]) { a }", "foreign-syntax", "for i in 0..=8 { a }"},
-        {"for (i = [0:2:8]) { a }", "foreign-syntax", "for i in range(0, 8 + 2, 2) { a }"},
+        {"for (i = [0:2:8]) { a }", "foreign-syntax", "for i in range(0, 9, 2) { a }"},
         {"for (i = [1, 2, 5]) { a }", "foreign-syntax", "for i in [1, 2, 5] { a }"},
         {"for (int i = 0; i < 8; i++) { a }", "foreign-syntax", "for i in 0..8 { a }"},
         {"for (int i = 0; i <= n; ++i) { a }", "foreign-syntax", "for i in 0..=n { a }"},
