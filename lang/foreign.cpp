@@ -139,6 +139,10 @@ bool Builder::foreign_loop(Index at) {
     if (end_value == close) {
         if (kind(value) != Tok::ListOpen) return propose(name + " in " + inside(value, close));
         const Index end = match(value);
+        if (end + 1 != close) {
+            d.help("write a loop for each variable, one in another");
+            return true;
+        }
         const Index one = find(value + 1, end, Tok::Colon);
         if (one == end) return propose(name + " in " + inside(value, close));
         const Index two = find(one + 1, end, Tok::Colon);
