@@ -57,10 +57,11 @@ struct Input {
     double present;
 };
 
-// Fractions and sines of the time, each once, where what stands above them reads more than the time.
+// Fractions and sines of the time, each once, where what stands above them reads more than the time;
+// and the time itself, where it stands elsewhere, too.
 std::vector<NodeId> moving_with_time(const ir::Graph &graph, NodeId field) {
     constexpr ir::OpSet bounded{Op::Fract, Op::Mod, Op::Sin, Op::Cos};
-    std::vector<NodeId> out, todo{field};
+    std::vector<NodeId> out, alone, todo{field};
     std::unordered_set<NodeId> seen;
     while (!todo.empty()) {
         const NodeId id = todo.back();
@@ -68,6 +69,10 @@ std::vector<NodeId> moving_with_time(const ir::Graph &graph, NodeId field) {
         if (!id || !seen.insert(id).second || !graph.reads(id).time) continue;
         const ir::Node &node = graph[id];
         const ir::Graph::Reads reads = graph.reads(id);
+        if (node.op == Op::Time) {
+            alone.push_back(id);
+            continue;
+        }
         if (bounded[node.op] && node.type == ir::Type::Float && !reads.point && !reads.params &&
             !reads.free_vars) {
             out.push_back(id);
@@ -81,7 +86,6 @@ std::vector<NodeId> moving_with_time(const ir::Graph &graph, NodeId field) {
         todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
     }
     // The sine and the cosine of one angle turn a vector, which is seen of both alone.
-    std::vector<NodeId> alone;
     for (NodeId one : out)
         if (std::ranges::none_of(out, [&](NodeId other) {
                 return other != one && graph.arg(other, 0) == graph.arg(one, 0);
@@ -177,8 +181,9 @@ class ParamBounds {
             const Interval range = range_of(context_, ranges_, node, Cell{})[0];
             if (!range.finite() || !(range.width() > least_width)) continue;
             const NodeId variable = graph_.fresh_var(ir::Type::Float);
+            const bool is_time = graph_[node].op == Op::Time;
             out.push_back({node, ir::substitute(graph_, written.root, {{node, variable}}), Op::Var,
-                           graph_[variable].payload, range, range.middle()});
+                           graph_[variable].payload, range, is_time ? range.lo : range.middle()});
         }
         return out;
     }
