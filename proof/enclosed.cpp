@@ -69,7 +69,7 @@ constexpr ir::OpTable<Function> of_one{
     {Op::Fract, [](Interval) { return Interval(0, 1); }},
 };
 // Whatever their arguments are.
-constexpr ir::OpTable<Interval> always{
+constexpr ir::OpTable<Interval> range_of_any{
     {Op::Step, {0, 1}},
     {Op::Hash, {0, 1}},
     {Op::Smoothstep, {0, 1}},
@@ -101,7 +101,7 @@ Interval Enclosed::found(NodeId id, int i) {
     const auto arg = [&](int n) { return graph_.arg(id, n); };
     const auto part = [&](int n) { return of(arg(n), i); };
     if (of_one.names(node.op)) return of_one[node.op](part(0));
-    if (always.names(node.op)) return always[node.op];
+    if (range_of_any.names(node.op)) return range_of_any[node.op];
     if (node.op == Op::Point && k < 3) return box_[k];
     if (node.op == Op::Param && ranges_) return ranges_->params[node.payload][k];
     if (node.op == Op::Time && ranges_) return ranges_->time;

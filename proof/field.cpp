@@ -326,10 +326,6 @@ std::optional<double> unwound_bound(Flattening &context, const Ranges &ranges, N
     return search_bound(context, ranges, tape, Domain{box, &*zone}, budget).lipschitz;
 }
 
-} // namespace
-
-namespace {
-
 constexpr double beyond_flat = 1e4; // a bound by parts, over the slope seen
 
 // The steepest slope seen with the params in the middle of their ranges, and the time at its begin.
@@ -343,7 +339,9 @@ double seen_once(Flattening &own, const Ranges &all, NodeId field, const Domain 
     Dice dice{0x5eed};
     double most = 0;
     for (int k = 0; k < 24; ++k) {
-        machine.run(at_point(some_point(domain.box, dice)));
+        const Cell at = at_point(some_point(domain.box, dice));
+        if (domain.zone && misses(*domain.zone, at)) continue;
+        machine.run(at);
         if (machine.norm() != infinity) most = std::max(most, machine.norm());
     }
     return most;
