@@ -29,10 +29,11 @@
 //
 // MARCH from `begin` to `end`: enhanced sphere tracing (Balint and Valasek 2018; the fallback is
 // that of Keinert et al. 2014). A ray ends in a hit (a change of sign), in a miss (all of its way is
-// free) or undecided (the budget of evaluations is spent, or a surface was touched and not crossed).
+// free) or undecided (the budget of evaluations is spent).
 //   t = begin, before = 0, stride = 0, touches = 0, aims = false; while t <= end + slack:
 //     the budget is spent: undecided at t
 //     d = f(o + t*dir)
+//     while it touches (TOUCHES), and where d <= 0 and not below -slack(t)/4, TOUCHES says what is next
 //     if d <= 0 and aims: a hit between t - stride and t (REFINED)
 //     if stride > before + max(d, 0): the last two spheres do not overlap, so something may lie
 //       between them. Go back to the first sphere's edge: t += before - stride, stride = before,
@@ -41,12 +42,7 @@
 //     where Frame::estimate > 0, if d < slack(t)/4, or d < before and estimate*d < tolerance(t) for
 //       the nearing-th time in a row: a hit at t - tolerance(t)/2, from where a gradient does not
 //       cross the surface (ESTIMATES)
-//     if d < slack(t)/4 and touches = 0: look BESIDE; by what is there touches = -1 (it grazes a
-//       solid), 1 (it touches a sheet) or 0 (the surface is farther than d says)
-//     else if d < slack(t)/4 and touches > 0: touches += 1; beyond max_touches undecided at t
-//     else if d >= slack(t)/4: undecided at t if touches > 0; else touches = 0
-//     d = max(d, slack(t)/4), never less than float32 can move; graze*tolerance(t) while
-//       it grazes
+//     if d < slack(t)/4: it touches
 //     next = d, aims = false
 //     if stride > 0: assume that f goes on along the ray as straight as over the last stride. The
 //       sphere that would touch this one has the radius d*(stride + d - before)/(stride - d +
@@ -65,12 +61,15 @@
 //   most refined*tolerance, or the ends are as near, the ray lands there. So where a ray lands does not
 //   depend on where its samples fell.
 //
-//   BESIDE: f at eight places round the ray, 4*slack(t) away: o + t*dir + 4*slack(t)*(cos(k*pi/4)*u +
-//   sin(k*pi/4)*v), k = 0..7, with u, v perpendicular to the ray. One that is not above 0 tells of a
-//   solid that the ray grazes. Else the slope is that of `across` = (greatest - least)/(8*slack(t)) and
-//   `along` = (before - d)/stride: where d > 2*slack(t)*|(across, along)| the surface is farther. Else
-//   f at eight places tolerance(t)/4 away tells alike of a solid that the ray grazes; else it is a
-//   sheet or a point.
+//   TOUCHES: the solid is the closure of {f < 0}. Where a cut ends in the plane of what it cuts, f is 0
+//   on a film and above 0 on both sides of it: rounding alone could tell such a touch, |f| <
+//   slack(t)/4, from a surface. So what lies behind it decides. The ray goes on from a touch by
+//   probe*slack(t)/4, and by twice the step before from then on, at most graze*tolerance(t), so that
+//   whatever is thicker than a few slacks is met at any angle.
+//     d < -slack(t)/4, or d <= 0 for the deep-th time in a row: a hit between the last sample that was
+//       above 0, or the first of the touch, and t (REFINED)
+//     d >= slack(t)/4: it has passed, and marches on as from a beginning
+//   In a scene with ESTIMATES a touch is a hit.
 //
 //   `begin` and `end`: with a box (`Frame::boxed`) its entry and exit, clipped to 0..far;
 //   else 0..far.
@@ -134,19 +133,23 @@
 //   margin = shadow_bias*tolerance(t):
 //     the budget is spent: undecided; it counts as what it is so far
 //     d = f(q + s*l)
-//     if d <= 0, or estimate*d < dark*angle*s (ESTIMATES): all dark, done
+//     if d < -slack(s)/4, or estimate*d < dark*angle*s (ESTIMATES): all dark, done
+//     if d < slack(s)/4: TOUCHES, as for rays from the eye, by steps of at most angle*s/2. What is passed
+//       has shaded nothing: shadow and `at` are again what they were where d >= closed_from*angle*s
+//       last, and quiet = s*(1 - beyond*angle)
 //     edge = shadow*angle*s: what is farther changes nothing
-//     if s is a mark, d < edge and s <= quiet: closed(s); where that is below 1/256 all dark, done.
+//     if s is a mark, d < edge and s <= quiet: closed(s).
 //       quiet = s - calm*(near - edge): what is so much farther than the edge is not looked at again
-//       before that. Where closed(s) < shadow: shadow = closed(s), at = s
-//     d = max(d, slack(s)/4). The ball of radius d about s is free; up to s - (d - edge), with the new
+//       before that. Where closed(s) < shadow: shadow = max(closed(s), darkest), at = s
+//     The ball of radius d about s is free; up to s - (d - edge), with the new
 //       edge, nothing in it is nearer than that. s = the greatest of s - d and the first mark that is
 //       before s, not above s - (d - edge) and not above quiet
 //   PENUMBRA, where shadow < closed_from: the least of closed between the marks beside `at`, by
 //   penumbra_turns golden sections with the slope of `at`; at the least, closed is taken anew, with
 //   the slope there. So a penumbra depends on the solid alone: another bound makes other steps, but
 //   the same marks, and those that it passes over are not near enough.
-//   shadow = min(shadow, 1); result: shadow^2*(3 - 2*shadow)
+//   shadow = min(shadow, 1), at least darkest; result: shadow^2*(3 - 2*shadow), less what it is at
+//   darkest and divided by 1 less that, so that what is nearly dark is dark, without a step
 //
 // ESTIMATES, in scenes where some shape's bound is an estimate (`Frame::estimate`, the greatest bound of
 // all, by which at most a distance was divided): distances to fractals are such, and hardly anywhere
@@ -181,16 +184,20 @@ inline constexpr float occlusion_reach = 0.075f; // of half the height that is s
 inline constexpr float nearly = 0.98f;
 inline constexpr int penumbra_turns = 7;
 inline constexpr float calm = 0.25f;
-inline constexpr float dark = 1.0f / 64;   // of what the light covers at s
+inline constexpr float dark = 1.0f / 64;     // of what the light covers at s
+inline constexpr float darkest = 1.0f / 256; // of what is closed, but by what the way crosses
+inline constexpr float dark_light = darkest * darkest * (3 - 2 * darkest);
+inline constexpr float beyond = 4;         // lights' sizes from a touch, where marks count again
 inline constexpr float shadow_arm = 0.35f; // of the field's value beside a shadow ray
 inline constexpr float marks = 0.5f, closed_from = 1.0625f; // of what the light covers at s
 inline constexpr float jump = 2, graze = 1.0f / 16;         // tolerances
 inline constexpr int refinements = 12;
 inline constexpr float refined = 1.0f / 2048; // of a tolerance
-inline constexpr int max_touches = 8;
-inline constexpr int nearing = 3;      // samples, by which an estimate is hit
-inline constexpr int many_steps = 256; // red in a picture of steps
-inline constexpr int budget = 65536;   // evaluations a ray, where the scene does not say
+inline constexpr float probe = 16;            // slack/4: the first step beyond what is touched
+inline constexpr int deep = 5;                // touches not above 0 that are a solid, one less
+inline constexpr int nearing = 3;             // samples, by which an estimate is hit
+inline constexpr int many_steps = 256;        // red in a picture of steps
+inline constexpr int budget = 65536;          // evaluations a ray, where the scene does not say
 inline constexpr float shadow_bias = 4;
 inline constexpr float min_angle = 0.002f; // a hard shadow's edge, soft enough not to flicker
 inline constexpr std::array<float, 3> background{0.35f, 0.45f, 0.6f};

@@ -17,7 +17,6 @@ class Marcher {
         memory_.walks.resize(std::max(memory_.walks.size(), rays_.size()));
         memory_.next.resize(std::max(memory_.next.size(), rays_.size()));
         memory_.stops.clear(), memory_.queue.clear(), memory_.crossings.clear();
-        memory_.touching.clear();
         ++memory_.turn;
         if (memory_.seen.empty()) memory_.seen.resize(4096);
         for (std::uint32_t i = 0; i < rays_.size(); ++i) {
@@ -26,7 +25,6 @@ class Marcher {
             memory_.walks[i].t = rays_[i].begin;
             if (rays_[i].end >= rays_[i].begin) go_on(i);
         }
-        settle();
         std::size_t first = 0;
         while (first < memory_.queue.size()) halt(memory_.queue[first++]);
         refine(worker_, rays_, memory_.crossings, landings_);
@@ -70,9 +68,7 @@ class Marcher {
             landings_[i].steps = walk.steps;
             memory_.crossings.push_back(crossing(walk, i));
             return false;
-        case Verdict::Touches:
-            memory_.touching.push_back({i, walk.t, walk.d, slope_along(walk)});
-            return false; // until settle()
+        case Verdict::Touches: pass(walk, rays_[i].end, lengths_); return true;
         case Verdict::Near: landings_[i] = beside(walk, lengths_); return false;
         case Verdict::Undecided: break;
         }
@@ -130,22 +126,6 @@ class Marcher {
             memory_.walks[i].d = worker_.values[k];
             ++memory_.walks[i].steps;
             if (goes_on_from(i)) go_on(i);
-        }
-        settle();
-    }
-
-    // Those who touch something go on.
-    void settle() {
-        while (!memory_.touching.empty()) {
-            std::vector<Touch> found;
-            found.swap(memory_.touching);
-            find_touches(worker_, rays_, found);
-            for (const Touch &touch : found) {
-                Walk &walk = memory_.walks[touch.ray];
-                walk.touches = touch.touches;
-                advance(walk, rays_[touch.ray].end, lengths_, false);
-                go_on(static_cast<std::uint32_t>(touch.ray));
-            }
         }
     }
 

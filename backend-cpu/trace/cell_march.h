@@ -26,7 +26,6 @@ struct CellMarch {
     std::uint32_t turn = 0;
     std::vector<std::uint32_t> here; // the rays whose cell's tape is run
     std::vector<Crossing> crossings;
-    std::vector<Touch> touching; // who wait for what they touch
 };
 
 // By march() where the worker has cells.

@@ -102,56 +102,11 @@ void near(Worker &worker, const Vec *points, const float *g, const float *h, flo
         out[k] = g[k] / std::max(length(slopes[k]), shading::min_slope);
 }
 
-void find_touches(Worker &worker, std::span<const RayState> rays, std::span<Touch> found) {
-    constexpr std::size_t places = 8;
-    const Lengths lengths(worker.stage);
-    // The least and the greatest value of eight places about the way of each.
-    const auto around = [&](std::span<Touch *const> which, auto away, auto result) {
-        for (std::size_t j = 0; j < which.size(); ++j) {
-            const Touch &touch = *which[j];
-            const RayState &ray = rays[touch.ray];
-            const Vec way = ray.direction;
-            const Vec u = glm::normalize(
-                glm::cross(way, std::fabs(way.x) < 0.5f ? Vec{1, 0, 0} : Vec{0, 1, 0}));
-            const Vec v = glm::cross(way, u);
-            for (std::size_t k = 0; k < places; ++k) {
-                const float angle = 0.785398163f * static_cast<float>(k);
-                const Vec beside = std::cos(angle) * u + std::sin(angle) * v;
-                worker.taps.set(0, places * j + k,
-                                ray.origin + touch.t * way + away(touch) * beside);
-            }
-        }
-        distances(worker, worker.taps, worker.tap_values.data(), places * which.size());
-        for (std::size_t j = 0; j < which.size(); ++j)
-            result(*which[j],
-                   std::ranges::minmax(std::span(worker.tap_values).subspan(places * j, places)));
-    };
-    const std::size_t most = worker.taps.most() / places;
-    for (; !found.empty(); found = found.subspan(std::min(found.size(), most))) {
-        std::vector<Touch *> first, second;
-        for (Touch &touch : found.first(std::min(found.size(), most))) first.push_back(&touch);
-        const auto slack = [&](const Touch &touch) { return lengths.slack_at(touch.t); };
-        around(
-            first, [&](const Touch &touch) { return 4 * slack(touch); },
-            [&](Touch &touch, auto ends) {
-                const auto [least, greatest] = ends;
-                touch.touches = -1;
-                if (!(least > 0)) return;
-                const float across = (greatest - least) / (8 * slack(touch));
-                touch.touches = 0;
-                if (!(touch.d > 2 * slack(touch) * std::hypot(across, touch.along)))
-                    second.push_back(&touch);
-            });
-        around(
-            second, [&](const Touch &touch) { return 0.25f * lengths.tolerance(touch.t); },
-            [](Touch &touch, auto ends) { touch.touches = ends.min > 0 ? 1 : -1; });
-    }
-}
-
 void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,
             std::span<Landing> landings) {
     const Lengths lengths(worker.stage);
     const auto chord = [](const Crossing &c) {
+        if (!(c.at_a > c.at_b)) return c.a;
         return c.b > c.a ? c.a + (c.b - c.a) * (c.at_a / (c.at_a - c.at_b)) : c.b;
     };
     std::vector<std::size_t> active(crossings.size());
@@ -206,7 +161,6 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
     const int budget = worker.stage.budget * (brute ? 100 : 1);
     std::vector<Walk> walks(rays.size());
     std::vector<std::size_t> active;
-    std::vector<Touch> touching;
     std::vector<Crossing> crossings;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         walks[i].t = rays[i].begin;
@@ -217,7 +171,8 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
     const auto judged = [&](std::size_t i) {
         Walk &walk = walks[i];
         Verdict verdict = judge(walk, lengths);
-        if (brute && verdict != Verdict::Crossed && !std::isnan(walk.d))
+        if (brute && !std::isnan(walk.d) && verdict != Verdict::Crossed &&
+            verdict != Verdict::Touches)
             verdict = walk.d <= 0 ? Verdict::Crossed : Verdict::GoOn;
         switch (verdict) {
         case Verdict::GoOn: advance(walk, rays[i].end, lengths, brute); return false;
@@ -226,9 +181,7 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
             landings[i].steps = walk.steps;
             crossings.push_back(crossing(walk, i));
             return true;
-        case Verdict::Touches:
-            touching.push_back({i, walk.t, walk.d, slope_along(walk)});
-            return false;
+        case Verdict::Touches: pass(walk, rays[i].end, lengths); return false;
         case Verdict::Near: landings[i] = beside(walk, lengths); return true;
         case Verdict::Undecided: break;
         }
@@ -260,12 +213,6 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
             ++walk.steps;
         }
         std::erase_if(active, judged);
-        find_touches(worker, rays, touching);
-        for (const Touch &touch : touching) {
-            walks[touch.ray].touches = touch.touches;
-            advance(walks[touch.ray], rays[touch.ray].end, lengths, brute);
-        }
-        touching.clear();
     }
     refine(worker, rays, crossings, landings);
 }

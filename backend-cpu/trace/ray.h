@@ -13,7 +13,8 @@ struct Walk {
     float t = 0, before = 0, stride = 0, d = 0;
     float span = 0, reached = 0; // how far d reaches, and `before`; where that is more than they
     int steps = 0;
-    int touches = 0;   // samples in a row as near as slack/4; below 0: of a solid that it grazes
+    int touches = 0;   // 1, and how many samples in a row of a touch were not above 0; 0: none
+    float film = 0;    // how far it has come since the last that was, or since the first
     int nearing = 0;   // samples in a row within an estimate's tolerance, each nearer than the last
     bool aims = false; // the last step was to change the sign
 };
@@ -30,28 +31,31 @@ inline bool apart(const Walk &walk) {
     return !(walk.d > 0 && walk.stride <= walk.reached + walk.span);
 }
 
-// What a sample says of its ray. Touches: first it has to be known what lies beside it.
+// What a sample says of its ray. Touches: what lies ahead says whether there is a solid.
 enum class Verdict : std::uint8_t { GoOn, GoBack, Crossed, Near, Touches, Undecided };
 inline Verdict judge(Walk &walk, const Lengths &lengths) {
     if (std::isnan(walk.d)) return Verdict::Undecided;
-    if (walk.d <= 0 && walk.aims) return Verdict::Crossed;
+    const float film = 0.25f * lengths.slack_at(walk.t);
+    if (walk.touches > 0) {
+        if (walk.d < film)
+            return walk.d < -film || (walk.d <= 0 && walk.touches >= ir::shading::deep)
+                       ? Verdict::Crossed
+                       : Verdict::Touches;
+        walk.touches = 0; // it has passed, and begins anew
+        walk.before = walk.stride = walk.reached = 0;
+    }
+    const Verdict inside =
+        walk.d < -film || lengths.estimate > 0 ? Verdict::Crossed : Verdict::Touches;
+    if (walk.d <= 0 && walk.aims) return inside;
     if (apart(walk)) return Verdict::GoBack;
-    if (walk.d <= 0) return Verdict::Crossed;
+    if (walk.d <= 0) return inside;
     const bool nearing = lengths.estimate > 0 && walk.d < walk.before &&
                          lengths.estimate * walk.d < lengths.tolerance(walk.t);
     walk.nearing = nearing ? walk.nearing + 1 : 0;
-    const bool touch = walk.d < 0.25f * lengths.slack_at(walk.t);
+    const bool touch = walk.d < film;
     if (walk.nearing == ir::shading::nearing || (touch && lengths.estimate > 0))
         return Verdict::Near;
-    if (touch) {
-        if (walk.touches == 0) return Verdict::Touches;
-        if (walk.touches > 0 && ++walk.touches > ir::shading::max_touches)
-            return Verdict::Undecided;
-    } else {
-        if (walk.touches > 0) return Verdict::Undecided;
-        walk.touches = 0;
-    }
-    return Verdict::GoOn;
+    return touch ? Verdict::Touches : Verdict::GoOn;
 }
 // Where a ray that has come near lands: so far from the surface that a gradient does not cross it.
 inline Landing beside(const Walk &walk, const Lengths &lengths) {
@@ -61,7 +65,8 @@ inline float slope_along(const Walk &walk) {
     return walk.stride > 0 ? (walk.before - walk.d) / walk.stride : 0;
 }
 inline Crossing crossing(const Walk &walk, std::size_t ray) {
-    return {ray, walk.t - walk.stride, walk.t, walk.before, walk.d, walk.aims};
+    const float from = walk.touches > 0 ? walk.film : walk.stride;
+    return {ray, walk.t - from, walk.t, walk.before, walk.d, walk.aims};
 }
 
 // How far beyond the last sample to look next, where what lies between is not known to be free.
@@ -82,9 +87,7 @@ inline void go_back(Walk &walk, const Lengths &lengths, bool by_curvature) {
 }
 
 inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
-    const float least = walk.touches < 0 ? ir::shading::graze * lengths.tolerance(walk.t)
-                                         : 0.25f * lengths.slack_at(walk.t);
-    const float d = std::max(walk.d, least);
+    const float d = walk.d;
     const float span = std::max(walk.span, d);
     float next = brute ? std::max(0.1f * d, 0.125f * lengths.tolerance(walk.t)) : d;
     if (!brute && span > d) {
@@ -110,11 +113,30 @@ inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
     // what is not proved yet ends at the end exactly, rounding or not, so that it is still checked
     const float proved = std::max(end, walk.t + d);
     next = std::min(next, proved - walk.t);
-    walk.d = d;
     walk.before = d;
     walk.reached = span;
     walk.stride = next;
     walk.t = std::min(walk.t + next, proved);
+}
+
+// On from a sample that touches: a few slacks first, then ever more, so that whatever is thicker than
+// these is met at any angle.
+inline void pass(Walk &walk, float end, const Lengths &lengths) {
+    if (walk.touches == 0) walk.stride = 0;
+    if (walk.touches == 0 || walk.d > 0) {
+        walk.touches = 1;
+        walk.film = 0;
+        walk.before = std::max(walk.d, 0.0f);
+    }
+    if (!(walk.d > 0)) ++walk.touches;
+    const float least = ir::shading::probe * 0.25f * lengths.slack_at(walk.t);
+    const float most = std::max(least, ir::shading::graze * lengths.tolerance(walk.t));
+    const float next = std::min(std::max(least, 2 * walk.stride), most);
+    const float to = walk.t < end ? std::min(walk.t + next, end) : walk.t + next;
+    walk.stride = next;
+    walk.film += to - walk.t;
+    walk.t = to;
+    walk.aims = false;
 }
 
 } // namespace fathom::cpu

@@ -110,15 +110,6 @@ void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std:
 void near(Worker &worker, const Vec *points, const float *g, const float *h, float *out,
           std::size_t n);
 
-// What a ray touches, as Walk::touches (shading.h, BESIDE): at t, where the field is d and falls by
-// `along` a unit of the way.
-struct Touch {
-    std::size_t ray;
-    float t, d, along;
-    int touches = 0; // found
-};
-void find_touches(Worker &worker, std::span<const RayState> rays, std::span<Touch> found);
-
 // A hit's place: between the last two samples of its walk (shading.h, REFINED).
 struct Crossing {
     std::size_t ray;

@@ -20,6 +20,10 @@ struct State {
     float shadow = shading::closed_from; // the least of `closed` at them so far, and
     float at = 0, slope = 1;             // where, and the gradient's length there
     float quiet = 1e30f;                 // from where on it is looked at again
+    int touches = 0;                     // as Walk::touches
+    int probes = 0;                      // steps of the touch
+    float clear = shading::closed_from;  // shadow, at and slope where it was last
+    float clear_at = 0, clear_slope = 1; // clear of everything
 };
 
 class Shadows {
@@ -34,8 +38,9 @@ class Shadows {
         march();
         find_penumbrae();
         for (std::size_t i = 0; i < rays_.size(); ++i) {
-            const float shadow = std::min(states_[i].shadow, 1.0f);
-            lit[i] = shadow * shadow * (3.0f - 2.0f * shadow);
+            const float shadow = std::clamp(states_[i].shadow, shading::darkest, 1.0f);
+            lit[i] = (shadow * shadow * (3.0f - 2.0f * shadow) - shading::dark_light) /
+                     (1.0f - shading::dark_light);
         }
     }
 
@@ -68,13 +73,11 @@ class Shadows {
         next_.resize(active.size());
         for (std::size_t k = 0; k < active.size(); ++k) {
             const std::size_t i = active[k];
-            const State &state = states_[i];
-            float d = worker_.values[k];
-            if (lengths_.estimate > 0 && lengths_.estimate * d < shading::dark * angle_ * state.s)
-                d = 0;
-            next_[k] = std::max(d, 0.25f * lengths_.slack_at(state.s));
-            if (d <= 0 || (state.mark && !is_bound(worker_, k) &&
-                           d < state.shadow * angle_ * state.s && state.s <= state.quiet))
+            State &state = states_[i];
+            const float d = worker_.values[k], light = angle_ * state.s;
+            next_[k] = passed(state, d);
+            if (state.touches == 0 && state.shadow > 0 && state.mark && !is_bound(worker_, k) &&
+                d < state.shadow * light && state.s <= state.quiet)
                 close_.push_back({i, state.s, d});
         }
         look();
@@ -84,10 +87,40 @@ class Shadows {
                 state.s = 0;
                 continue;
             }
+            if (state.touches > 0) {
+                state.s -= next_[k];
+                state.mark = false;
+                continue;
+            }
             const float next = state.s - next_[k], mark = next_mark(state, next_[k]);
             state.mark = mark >= next;
             state.s = std::max(next, mark);
         }
+    }
+
+    // The way on from a sample, by TOUCHES. It may be that all is dark.
+    float passed(State &state, float d) const {
+        const float film = 0.25f * lengths_.slack_at(state.s), light = angle_ * state.s;
+        const bool estimated = lengths_.estimate > 0;
+        if (estimated && lengths_.estimate * d < shading::dark * light) d = -1;
+        if (d < -film || std::isnan(d) || (d <= 0 && state.touches >= shading::deep)) {
+            state.shadow = 0;
+            return 0;
+        }
+        if (d < film) {
+            if (state.touches == 0) state.probes = 0;
+            state.touches = d > 0 ? 1 : std::max(state.touches, 1) + 1;
+            const float least = shading::probe * film;
+            return std::max(least, std::min(std::ldexp(least, state.probes++), light / 2));
+        }
+        if (state.touches > 0) {
+            state.touches = 0;
+            state.shadow = state.clear, state.at = state.clear_at, state.slope = state.clear_slope;
+            state.quiet = state.s * (1 - shading::beyond * angle_);
+        } else if (d >= shading::closed_from * light) {
+            state.clear = state.shadow, state.clear_at = state.at, state.clear_slope = state.slope;
+        }
+        return d;
     }
 
     // How far the marks about s are apart: the greatest power of 2 that is not above a share of the
@@ -112,10 +145,9 @@ class Shadows {
             const Close &close = close_[j];
             State &state = states_[close.ray];
             const float closed = near_[j] / (angle_ * close.s);
-            if (!(close.d > 0) || closed < 0.00390625f) state.shadow = 0;
             state.quiet = close.s - shading::calm * (near_[j] - state.shadow * angle_ * close.s);
-            if (state.shadow > 0 && closed < state.shadow) {
-                state.shadow = closed;
+            if (closed < state.shadow) {
+                state.shadow = std::max(closed, shading::darkest);
                 state.at = close.s;
                 state.slope = values_[j] > 0 ? values_[j] / near_[j] : 1.0f;
             }
@@ -151,7 +183,7 @@ class Shadows {
         std::vector<Search> searches;
         for (std::size_t i = 0; i < rays_.size(); ++i) {
             const State &state = states_[i];
-            if (!(state.shadow > 0 && state.shadow < shading::closed_from)) continue;
+            if (!(state.shadow > shading::darkest && state.shadow < shading::closed_from)) continue;
             const float gap = spacing(state.at);
             const float lo = std::max(state.at - gap, rays_[i].margin),
                         hi = std::min(state.at + gap, rays_[i].reach);

@@ -14,7 +14,7 @@ $if PASSES
 //   0  the ray from the eye: t, before, stride, reached; one from a light: t of the hit, s, stride, shadow
 //   1  of that from a light: at, quiet; of one from the eye to an estimate: nearing
 //   2  the colour without that light
-//   3  the steps, the touches + 1 (+ 16 where it aims) or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
+//   3  the steps, the touches (+ 16 where it aims) or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
 //      eye's ray is undecided, and 2 where one from a light is
 uniform int fathom_turns, fathom_budget;
 #ifdef FATHOM_BEGINS // the host never lets rays go on
@@ -86,7 +86,8 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     float t = begin;
     float before = 0.0;
     float stride = 0.0;
-    int touches = 0;   // samples in a row as near as slack/4 to a sheet; below 0: to a solid that it grazes
+    int touches = 0;   // 1, and how many samples in a row of a touch were not above 0; 0: none
+    float passed = 0.0, pace = 0.0; // how far it has come since the last that was, or since the first; its last step
     bool aims = false; // the last step was to change the sign
 $if HAS_SAFE_RADIUS
     float reached = 0.0;
@@ -117,7 +118,12 @@ $if ESTIMATED
         nearing = int(fathom_kept(fathom_kept_1).x);
 $end
         aims = more.y > 15.0;
-        touches = int(more.y) - (aims ? 17 : 1);
+        touches = int(more.y) - (aims ? 16 : 0);
+        if (touches > 0) {
+            passed = kept.w;
+            pace = stride;
+            stride = 0.0;
+        }
     }
     int begun = steps;
     int limit = min(fathom_turns, fathom_budget - steps);
@@ -130,14 +136,13 @@ $end
 $end
     fathom_end = 3;
     int turn = $ZERO;
-    int phase = 0; // 0: it marches; 1: the place of the hit is refined; 2: it looks beside what it touches
-    int count = 0; // of refinements, of places beside
+    int phase = 0; // 0: it marches; 1: the place of the hit is refined
+    int count = 0; // of refinements
     int stays = 0; // which end of the chord stayed: 1 a, 2 b
     float a = 0.0, b = 0.0, at_a = 0.0, at_b = 0.0;
-    vec3 aside = vec3(0.0), u = vec3(0.0), v = vec3(0.0);
-    float d = 0.0, touched = 0.0, least = 0.0, greatest = 0.0;
+    float d = 0.0;
 $if HAS_SAFE_RADIUS
-    float span = 0.0, touched_span = 0.0;
+    float span = 0.0;
 $end
 $# Drivers compute both sides of a branch: what is seldom wanted stands outside of the loop that
 $# marches, and comes back to it for the field's one evaluation.
@@ -147,7 +152,7 @@ $# marches, and comes back to it for the field's one evaluation.
 $if FAR_CELLS
 $# Through far cells first, all rays together; then the field is evaluated, once. A step is
 $# what evaluates it.
-            while (phase == 0 && touches <= 0 && t <= end) {
+            while (phase == 0 && touches == 0 && t <= end) {
                 vec2 clear = fathom_clear(origin + t * direction, direction, fathom_tolerance(t));
                 if (!(clear.y > 0.0 && stride <= before + clear.x)) break;
                 t += clear.y;
@@ -157,7 +162,7 @@ $# what evaluates it.
             }
 $end
             if (!(t <= end + fathom_slack)) break;
-            vec3 p = origin + t * direction + aside;
+            vec3 p = origin + t * direction;
 $if CACHED
             fathom_width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;
             if (phase == 0) fathom_step(t, before, stride, steps);
@@ -215,65 +220,30 @@ $if ESTIMATED
             break;
         }
 $end
-        bool touch = d < 0.25 * fathom_slack_at(t);
-        bool on = phase == 0 && d > 0.0 && touches != 0;
-        if (on) {
-            bool sheet = touches > 0;
-            if (sheet) ++touches;
-            if (sheet && !touch) touches = $MAX_TOUCHES + 1;
-            if (touches > $MAX_TOUCHES) {
-                fathom_end = 2;
-                break;
-            }
-            if (!touch) touches = 0;
-        }
-        if (phase == 0 && d > 0.0 && !on) {
-            phase = 2;
-            count = 0;
-            touched = d;
-$if HAS_SAFE_RADIUS
-            touched_span = span;
-$end
-            u = normalize(cross(direction, abs(direction.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
-            v = cross(direction, u);
-            aside = 4.0 * fathom_slack_at(t) * u;
-            least = 1e30;
-            greatest = 0.0;
-            continue;
-        }
-        if (phase == 2) {
-            float slack = fathom_slack_at(t);
-            if (count < 8) {
-                least = min(least, d);
-                greatest = max(greatest, d);
-            }
-            bool solid = !(d > 0.0);
-            bool farther = false;
-            if (!solid && ++count == 8) {
-                float across = (greatest - least) / (8.0 * slack);
-                float along = mix(0.0, (before - touched) / stride, stride > 0.0);
-                farther = touched > 2.0 * slack * length(vec2(across, along));
-            }
-            if (!solid && !farther && count < 16) {
-                vec3 turned = 0.707106781 * (u + v);
-                v = 0.707106781 * (v - u);
-                u = turned;
-                aside = mix(0.25 * tolerance, 4.0 * slack, count < 8) * u;
+$# What is touched is passed, with ever longer steps, until the field says what is behind it.
+        float film = 0.25 * fathom_slack_at(t);
+        if (phase == 0 && !(d < -film)$NO_ESTIMATE && !(d <= 0.0 && touches >= $DEEP)) {
+            if (d >= film) {
+                touches = 0;
+                before = 0.0;
+                float ahead = d;
+$include march_ahead
+                ++turn;
                 continue;
             }
-            touches = int(!farther);
-            if (solid) touches = -1;
-            phase = 0;
-            aside = vec3(0.0);
-            d = touched;
-$if HAS_SAFE_RADIUS
-            span = touched_span;
-$end
-            on = true;
-        }
-        if (on) {
-            float ahead = max(d, mix(0.25 * fathom_slack_at(t), $GRAZE * tolerance, touches < 0));
-$include march_ahead
+            if (touches == 0) pace = 0.0;
+            if (touches == 0 || d > 0.0) {
+                touches = 1;
+                passed = 0.0;
+                before = max(d, 0.0);
+            }
+            if (!(d > 0.0)) ++touches;
+            stride = 0.0;
+            pace = min(max($PROBE * film, 2.0 * pace), max($PROBE * film, $GRAZE * tolerance));
+            float to = mix(t + pace, min(t + pace, end), t < end);
+            passed += to - t;
+            t = to;
+            aims = false;
             ++turn;
             continue;
         }
@@ -281,7 +251,7 @@ $include march_ahead
         if (begins) {
             phase = 1;
             count = 0;
-            a = t - stride;
+            a = t - mix(stride, passed, touches > 0);
             b = t;
             at_a = before;
             at_b = d;
@@ -302,7 +272,7 @@ $include march_ahead
             ++count;
             ++steps;
         }
-        float x = mix(b, a + (b - a) * (at_a / (at_a - at_b)), b > a);
+        float x = mix(b, a + (b - a) * (at_a / max(at_a - at_b, 1e-30)), b > a);
         tolerance = fathom_tolerance(mix(x, t, count > 0));
         float near = $REFINED * tolerance;
         bool there = count > 0 && (count == $REFINEMENTS || abs(x - t) <= near) ||
@@ -321,14 +291,14 @@ $if PASSES
     if (fathom_end == 3) {
         fathom_goes_on = true;
 $if HAS_SAFE_RADIUS
-        fathom_keep_0 = vec4(t, before, stride, reached);
+        fathom_keep_0 = vec4(t, before, stride + mix(0.0, pace, touches > 0), mix(reached, passed, touches > 0));
 $else
-        fathom_keep_0 = vec4(t, before, stride, 0.0);
+        fathom_keep_0 = vec4(t, before, stride + mix(0.0, pace, touches > 0), passed);
 $end
 $if ESTIMATED
         fathom_keep_1 = vec4(float(nearing), 0.0, 0.0, 0.0);
 $end
-        fathom_keep_3 = vec4(float(steps), float(touches + (aims ? 17 : 1)), -1.0, 0.0);
+        fathom_keep_3 = vec4(float(steps), float(touches + (aims ? 16 : 0)), -1.0, 0.0);
     }
 $else
     if (fathom_end == 3) fathom_end = 2;

@@ -18,6 +18,9 @@ float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, floa
     bool mark = false; // whether s is one of the marks
     float shadow = $CLOSED_FROM, at = 0.0; // the least of `closed` at them so far, and where
     float quiet = 1e30; // from where on marks are looked at again
+    float clear = shadow, clear_at = 0.0; // shadow and at, where the way was last clear of everything
+    int touches = 0; // 1, and how many samples in a row of a touch were not above 0; 0: none
+    int probes = 0;   // steps of the touch
     int turn = $ZERO;
 $if PASSES
     int taken = 0;
@@ -25,10 +28,16 @@ $if PASSES
         vec4 kept = fathom_kept(fathom_kept_0);
         s = kept.y;
         mark = kept.z > 0.0;
+        if (kept.z < 0.0) {
+            probes = int(-kept.z) / 8;
+            touches = int(-kept.z) - 8 * probes;
+        }
         shadow = kept.w;
         kept = fathom_kept(fathom_kept_1);
         at = kept.x;
         quiet = kept.y;
+        clear = kept.z;
+        clear_at = kept.w;
         taken = int(fathom_kept(fathom_kept_3).y);
         fathom_light_kept = -1;
     }
@@ -74,12 +83,34 @@ $if CACHED
             if (fathom_absent) return 1.0;
 $end
             if (!ahead) break;
-            if (!(f > 0.0)) return 0.0;
+            float film = 0.25 * fathom_slack_at(s);
 $if ESTIMATED
-            if (f < $DARK * angle * s) return 0.0;
+            if (!(f > 0.0) || f < $DARK * angle * s) return 0.0;
+$else
+            if (!(f >= -film) || f <= 0.0 && touches >= $DEEP) return 0.0;
 $end
             ++turn;
-            next = max(f, 0.25 * fathom_slack_at(s));
+$# What is touched is passed; so it has shaded nothing.
+            if (f < film) {
+                if (touches == 0) probes = 0;
+                touches = f > 0.0 ? 1 : max(touches, 1) + 1;
+                float least = $PROBE * film;
+                s -= max(least, min(least * exp2(float(probes)), 0.5 * angle * s));
+                ++probes;
+                mark = false;
+                continue;
+            }
+            if (touches > 0) {
+                touches = 0;
+                shadow = clear;
+                at = clear_at;
+                quiet = s * (1.0 - $BEYOND * angle);
+            }
+            if (f >= $CLOSED_FROM * angle * s) {
+                clear = shadow;
+                clear_at = at;
+            }
+            next = f;
             if (mark && s <= quiet && f < shadow * angle * s) {
                 tap = 0;
                 ahead = false;
@@ -105,14 +136,14 @@ $end
 $if PASSES
             if (s > margin && taken + turn < fathom_budget) {
                 fathom_goes_on = true;
-                fathom_keep_0 = vec4(0.0, s, mark ? 1.0 : 0.0, shadow);
-                fathom_keep_1 = vec4(at, quiet, 0.0, 0.0);
+                fathom_keep_0 = vec4(0.0, s, touches > 0 ? float(-touches - 8 * probes) : float(mark), shadow);
+                fathom_keep_1 = vec4(at, quiet, clear, clear_at);
                 fathom_keep_3.y = float(taken + turn);
                 return 1.0;
             }
 $end
             if (s > margin) fathom_shadow_undecided = true;
-            if (!(shadow < $CLOSED_FROM)) break;
+            if (!(shadow > $DARKEST && shadow < $CLOSED_FROM)) break;
             search = 0;
             float gap = fathom_power($MARKS * angle * at);
             lo = max(at - gap, margin);
@@ -168,14 +199,13 @@ $else
         float near = value / max(length(0.75 / arm * sum), $MIN_SLOPE);
 $end
         float closed = near / (angle * x);
-        if (!(closed >= 0.00390625)) return 0.0;
         if (search >= 0) {
             shadow = closed;
             break;
         }
         quiet = x - $CALM * (near - shadow * angle * x);
         if (closed < shadow) {
-            shadow = closed;
+            shadow = max(closed, $DARKEST);
             at = x;
         }
         tap = -1;
@@ -186,8 +216,8 @@ $end
 $if PASSES
     fathom_taken += turn;
 $end
-    shadow = min(shadow, 1.0);
-    return shadow * shadow * (3.0 - 2.0 * shadow);
+    shadow = clamp(shadow, $DARKEST, 1.0);
+    return (shadow * shadow * (3.0 - 2.0 * shadow) - $DARK_LIGHT) / (1.0 - $DARK_LIGHT);
 }
 $end
 

@@ -316,3 +316,50 @@ TEST_CASE("where one sample does not do there are more, and nowhere else") {
     CHECK(smooth.work.rays > one.work.rays);
     CHECK(different(one, all) > 3 * different(smooth, all));
 }
+
+TEST_CASE("where a cut is flush with what it cuts nothing is drawn, and nothing shades") {
+    const std::string light = camera + "plane(Y, -1.3)\nlighting(ambient_occlusion: 0)\n"
+                                       "sun(direction: [0.5, 0.8, 0.3])\n";
+    // what is cut flush, and the same solid by a longer tool or by itself
+    const std::pair<const char *, const char *> pairs[] = {
+        {"cylinder(1, 2) - cylinder(0.8, 2)", "cylinder(1, 2) - cylinder(0.8, 2.5)"},
+        {"box(2) - box([1, 1, 1]).translate(y: 0.5)",
+         "box(2) - box([1, 1.5, 1]).translate(y: 0.75)"},
+        {"box(2) - box(2).translate(x: 1)", "box([1, 2, 2]).translate(x: -0.5)"},
+        {"box(2) & box(2).translate(x: 2)", "empty"},
+        {"sphere(1) | (box(4) - box(4))", "sphere(1)"},
+        {"box([3, 0.2, 3]).rotate(20deg, axis: X) -"
+         " cylinder(0.7, 0.2).translate(x: 0.5).rotate(20deg, axis: X)",
+         "box([3, 0.2, 3]).rotate(20deg, axis: X) -"
+         " cylinder(0.7, 0.4).translate(x: 0.5).rotate(20deg, axis: X)"},
+        {"smooth_union(0.2) { box([3, 0.2, 3]) - cylinder(0.7, 0.2); sphere(0.3) }",
+         "smooth_union(0.2) { box([3, 0.2, 3]) - cylinder(0.7, 0.4); sphere(0.3) }"},
+    };
+    for (const auto &[flush, plain] : pairs) {
+        INFO(flush);
+        // The rim of a film still has an edge of a shadow, a pixel wide.
+        CHECK(different(drawn(light + flush + "\n"), drawn(light + plain + "\n")) <=
+              width * height / 80);
+    }
+}
+
+TEST_CASE("a sheet as thin as a thousandth is seen whole") {
+    const auto hits = [](const char *at, const char *thick) {
+        const driver::Compilation sheets =
+            compiled(std::string("camera(at: ") + at + ", look_at: [0, 0, 0], fov: 40deg)\n" +
+                     "box([1.5, " + thick + ", 1.5]).rotate(0.3, axis: X)\n" +
+                     "sphere(0.5).shell(" + thick + ").translate(x: 1.4)\n");
+        const cpu::Stage stage = stage_of(sheets.scene);
+        std::vector<cpu::Ray> rays;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                rays.push_back(cpu::eye_ray(stage, float(x) + 0.5f, float(y) + 0.5f));
+        return std::ranges::count_if(cpu::cast(stage, rays), [](const cpu::Landing &landing) {
+            return landing.end == cpu::RayEnd::Hit;
+        });
+    };
+    for (const char *at : {"[0, 6, 0.01]", "[3, 4, 9]", "[0, 0.4, 7]"}) {
+        INFO(at);
+        CHECK(std::abs(hits(at, "0.001") - hits(at, "0.004")) <= few);
+    }
+}

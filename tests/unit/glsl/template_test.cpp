@@ -71,6 +71,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
         {"POOL", "fathom_cache_pool"},
         {"PART", ".x"},
         {"TEXT", ""},
+        {"NO_ESTIMATE", ""},
         {"NUMBER", "1"},
     };
     values["HIT"] =
@@ -92,6 +93,10 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "REFINED",
                                "CALM",
                                "DARK",
+                               "DARKEST",
+                               "DARK_LIGHT",
+                               "PROBE",
+                               "BEYOND",
                                "SHARE",
                                "CLOSED_FROM",
                                "MARKS",
@@ -116,12 +121,12 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "CELL"})
         values.emplace(number, "0.5");
     for (const char *count :
-         {"LIGHTS",     "MAX_STEPS", "ALL_TAPS",    "REFINEMENTS", "MAX_TOUCHES", "NEARING",
-          "MANY_STEPS", "SEARCHES",  "CHECK_STEPS", "AGES",        "ROWS",        "COUNT",
-          "WISHES",     "SAMPLED",   "HIGHEST",     "HIGH_BITS",   "HIGH_MASK",   "PLACE_BITS",
-          "HEAD",       "TAIL",      "LIMIT",       "INSERTED",    "EVICTED",     "DELETED",
-          "CROWDED",    "FULL",      "SWEPT",       "CHANGED",     "PAID",        "WASTED",
-          "LEFT",       "STEPS",     "MANY",        "REFUSED",     "STRIDE",      "LAST"})
+         {"LIGHTS",     "MAX_STEPS", "ALL_TAPS",    "REFINEMENTS", "DEEP",      "NEARING",
+          "MANY_STEPS", "SEARCHES",  "CHECK_STEPS", "AGES",        "ROWS",      "COUNT",
+          "WISHES",     "SAMPLED",   "HIGHEST",     "HIGH_BITS",   "HIGH_MASK", "PLACE_BITS",
+          "HEAD",       "TAIL",      "LIMIT",       "INSERTED",    "EVICTED",   "DELETED",
+          "CROWDED",    "FULL",      "SWEPT",       "CHANGED",     "PAID",      "WASTED",
+          "LEFT",       "STEPS",     "MANY",        "REFUSED",     "STRIDE",    "LAST"})
         values.emplace(count, "2");
     for (const char *word : {"EMPTY", "NOWHERE", "PLACES"}) values.emplace(word, "7u");
     for (const std::string &flag : flags) values.emplace(flag, is(flag.c_str()) ? "1" : "");
