@@ -76,6 +76,7 @@ Values values_of(const MarcherOptions &options) {
         {"MARKS", float_literal(shading::marks)},
         {"CLOSED_FROM", float_literal(shading::closed_from)},
         {"REFINEMENTS", fmt::to_string(shading::refinements)},
+        {"WIDEST", float_literal(shading::widest)},
         {"DARK_LIGHT", float_literal(shading::dark_light)},
         {"PROBE", float_literal(shading::probe)},
         {"DEEP", fmt::to_string(shading::deep)},

@@ -9,13 +9,15 @@
 //   eps   RenderSettings::epsilon
 //
 // LENGTHS, computed once a frame (view.h, `frame_of`)
-//   slack         float_slack * (|origin| + radius): what float32 cannot tell apart
+//   slack         float_slack * |origin|: what float32 cannot tell apart
 //   slack(t)      slack + float_slack*t: the same at t along a ray
 //   pixel         perspective: the width of a pixel at distance 1; orthographic: everywhere
 //   tolerance(t)  perspective:  min(eps, pixel/2)*t + slack
 //                 orthographic: min(eps*focus, pixel/2) + slack
-//   step(t)       arm*tolerance(t) + normal_slack*slack: the arm of a gradient's taps, so short that
-//                 they seldom lie on both sides of an edge
+//   step(t)       arm*tolerance(t) + min(normal_slack*(slack + float_slack*radius), widest*width(t)),
+//                 with the width of a pixel at t: the arm of a gradient's taps, so short that they
+//                 seldom lie on both sides of an edge. What is large and near, as a ball for a ground,
+//                 has a rounding of its size; but a part far away must not blur what is seen
 //
 // GRADIENT of g at p with arm h
 //   sum of e_i * g(p + h*e_i) times 0.75/h, i = 0..3, with the corners of a tetrahedron
@@ -172,7 +174,8 @@ namespace fathom::ir::shading {
 
 inline constexpr float float_slack = 1e-6f;
 inline constexpr float normal_slack = 50;
-inline constexpr float arm = 0.25f; // tolerances
+inline constexpr float arm = 0.25f;   // tolerances
+inline constexpr float widest = 0.5f; // pixels
 inline constexpr float min_slope = 1.0f / 1024;
 inline constexpr float relaxation =
     0.9f; // performance.md, 2: best of those measured on scenes with L = 1

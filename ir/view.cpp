@@ -209,7 +209,7 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
     frame.radius = radius;
     frame.occlusion_reach =
         shading::occlusion_reach * view.extent * (view.orthographic ? 1 : view.focus);
-    frame.slack = shading::float_slack * (glm::length(view.origin) + radius);
+    frame.slack = shading::float_slack * glm::length(view.origin);
     frame.pixel = 2 * view.extent / height;
     const double sharp =
         std::min(scene.render.epsilon * (view.orthographic ? view.focus : 1), frame.pixel / 2);

@@ -10,14 +10,16 @@ namespace fathom::cpu {
 namespace shading = ir::shading;
 
 Lengths::Lengths(const Stage &stage)
-    : slack(static_cast<float>(stage.frame.slack)), pixel(static_cast<float>(stage.frame.pixel)),
-      far(static_cast<float>(stage.frame.far)),
+    : slack(static_cast<float>(stage.frame.slack)),
+      coarse(slack + shading::float_slack * static_cast<float>(stage.frame.radius)),
+      pixel(static_cast<float>(stage.frame.pixel)), far(static_cast<float>(stage.frame.far)),
       base(static_cast<float>(stage.frame.tolerance_base)),
       slope(static_cast<float>(stage.frame.tolerance_slope)), fades(!stage.frame.boxed),
       orthographic(stage.view.orthographic), estimate(static_cast<float>(stage.frame.estimate)) {}
 
 float Lengths::arm(float t) const {
-    return shading::arm * tolerance(t) + shading::normal_slack * slack;
+    return shading::arm * tolerance(t) +
+           std::min(shading::normal_slack * coarse, shading::widest * width(t));
 }
 
 Inside box(const ir::Frame &frame, Vec origin, Vec direction) {

@@ -72,7 +72,7 @@ struct Worker {
 
 // Numbers of the frame in float32.
 struct Lengths {
-    float slack, pixel, far, base, slope;
+    float slack, coarse, pixel, far, base, slope;
     bool fades; // what lies far off, as rays have no box
     bool orthographic;
     float estimate; // Frame::estimate

@@ -49,7 +49,7 @@ vec4 fathom_kept(sampler2D kept) {
 $end
 
 void fathom_lengths() {
-    fathom_slack = $FLOAT_SLACK * (length(fathom_origin) + $RADIUS);
+    fathom_slack = $FLOAT_SLACK * length(fathom_origin);
     fathom_pixel = 2.0 * fathom_extent / fathom_resolution.y;
     fathom_far = $FAR;
     bool parallel = fathom_orthographic != 0;
@@ -66,7 +66,8 @@ float fathom_tolerance(float t) {
 }
 
 float fathom_arm(float t) {
-    return $ARM * fathom_tolerance(t) + $NORMAL_SLACK * fathom_slack;
+    float width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;
+    return $ARM * fathom_tolerance(t) + min($NORMAL_SLACK * (fathom_slack + $FLOAT_SLACK * $RADIUS), $WIDEST * width);
 }
 $if BOXED
 

@@ -363,3 +363,27 @@ TEST_CASE("a sheet as thin as a thousandth is seen whole") {
         CHECK(std::abs(hits(at, "0.001") - hits(at, "0.004")) <= few);
     }
 }
+
+TEST_CASE("what is far away, or a ground's size, changes nothing near") {
+    const std::string solid = "camera(at: [3, 4, 5], look_at: [0, 0, 0], fov: 30deg)\n"
+                              "box(1)\nsphere(0.6).translate(y: 0.8)\n"
+                                       "lighting(ambient_occlusion: 1, occlusion_reach: 0.3)\n";
+    const auto ground = [&](const char *size, const char *hidden = "") {
+        return drawn(solid + "box([" + size + ", 1, " + size + "]).translate(y: -1)\n" + hidden);
+    };
+    const cpu::Picture plain = ground("100");
+    // Normals are taken as far apart as half a pixel: a few at edges differ.
+    CHECK(different(plain, ground("2000")) <= width * height / 80);
+    CHECK(different(plain, ground("100", "sphere(1).translate(y: -3000)\n")) <=
+          width * height / 80);
+}
+
+TEST_CASE("a ball as large as a world has no grain") {
+    const cpu::Picture picture =
+        drawn(camera + "sphere(1000).translate(y: -1000)\nsun(direction: [0.5, 0.8, 0.3])\n");
+    int rough = 0;
+    for (int y = height / 2; y < height; ++y)
+        for (int x = 1; x < width; ++x)
+            rough += std::abs(byte(picture, x, y, 1) - byte(picture, x - 1, y, 1)) > 3;
+    CHECK(rough <= few);
+}

@@ -95,6 +95,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "DARK",
                                "DARKEST",
                                "DARK_LIGHT",
+                               "WIDEST",
                                "PROBE",
                                "BEYOND",
                                "SHARE",
