@@ -45,6 +45,7 @@ Picture traced(const ir::Scene &scene, const PictureOptions &options, double tim
                     made.complete,
                     made.work.undecided,
                     made.work.undecided_shadows,
+                    made.work.passed,
                     std::move(made.linear),
                     std::move(made.sums),
                     made.work.rays,
@@ -73,6 +74,7 @@ void add(const Picture &from, Picture &to) {
     to.evaluations += from.evaluations;
     to.undecided += from.undecided;
     to.undecided_shadows += from.undecided_shadows;
+    to.passed += from.passed;
     to.complete = to.complete && from.complete;
 }
 

@@ -12,6 +12,16 @@
 namespace fathom::cli {
 namespace {
 
+// Says that rays went through surfaces without an inside. A few graze something by chance.
+void say_passed(const v1::Picture &painted, const std::string &out, Terminal &terminal) {
+    if (painted.passed == 0 || painted.passed * 2000 < painted.rays) return;
+    terminal.say(fmt::format(
+        "fathom: {}: {} of {} rays pass a surface that has no inside (the field is 0 there, and "
+        "above 0 on both sides): it is not drawn. A cut that ends in the plane of what it cuts "
+        "should reach a little farther; a sheet needs a thickness, as `shell` and `- 0.01` give it",
+        out, painted.passed, painted.rays));
+}
+
 // Says what was left undecided. Whether that is an error.
 bool is_undecided(const v1::Picture &painted, const std::string &out, const RenderCommand &command,
                   Terminal &terminal) {
@@ -141,6 +151,7 @@ Exit make_frame(Work &work, int frame, const Note &note, Progress &progress) {
     if (!made.remark.empty() &&
         (terminal.interactive() || (command.cache && command.frames.numbers.empty())))
         terminal.say(out + ": " + made.remark);
+    say_passed(made, out, terminal);
     if (is_undecided(made, out, command, terminal)) return scene_error;
     return work.delivery.take(frame, note, std::move(made));
 }

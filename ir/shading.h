@@ -70,7 +70,9 @@
 //   whatever is thicker than a few slacks is met at any angle.
 //     d < -slack(t)/4, or d <= 0 for the deep-th time in a row: a hit between the last sample that was
 //       above 0, or the first of the touch, and t (REFINED)
-//     d >= slack(t)/4: it has passed, and marches on as from a beginning
+//     d >= slack(t)/4: it has passed, and marches on as from a beginning. Where d is above `across`
+//       times the way since the last sample that was not above 0, or since the first of the touch,
+//       it is counted: it did not graze, but went through what has no inside
 //   In a scene with ESTIMATES a touch is a hit.
 //
 //   `begin` and `end`: with a box (`Frame::boxed`) its entry and exit, clipped to 0..far;
@@ -196,11 +198,12 @@ inline constexpr float marks = 0.5f, closed_from = 1.0625f; // of what the light
 inline constexpr float jump = 2, graze = 1.0f / 16;         // tolerances
 inline constexpr int refinements = 12;
 inline constexpr float refined = 1.0f / 2048; // of a tolerance
-inline constexpr float probe = 16;            // slack/4: the first step beyond what is touched
-inline constexpr int deep = 5;                // touches not above 0 that are a solid, one less
-inline constexpr int nearing = 3;             // samples, by which an estimate is hit
-inline constexpr int many_steps = 256;        // red in a picture of steps
-inline constexpr int budget = 65536;          // evaluations a ray, where the scene does not say
+inline constexpr float across = 1.0f / 16; // the slope behind a touch, from which on it is no graze
+inline constexpr float probe = 16;         // slack/4: the first step beyond what is touched
+inline constexpr int deep = 5;             // touches not above 0 that are a solid, one less
+inline constexpr int nearing = 3;          // samples, by which an estimate is hit
+inline constexpr int many_steps = 256;     // red in a picture of steps
+inline constexpr int budget = 65536;       // evaluations a ray, where the scene does not say
 inline constexpr float shadow_bias = 4;
 inline constexpr float min_angle = 0.002f; // a hard shadow's edge, soft enough not to flicker
 inline constexpr std::array<float, 3> background{0.35f, 0.45f, 0.6f};

@@ -12,7 +12,8 @@ namespace fathom::gl {
 namespace {
 
 // What a text by passes says of a ray, at location 2.
-constexpr float goes_on = 0.9f, eye_undecided = 0.25f, light_undecided = 0.5f, within = 0.1f;
+constexpr float goes_on = 0.9f, eye_passed = 0.125f, eye_undecided = 0.25f, light_undecided = 0.5f,
+                within = 0.05f;
 constexpr GLenum rays_place = GL_COLOR_ATTACHMENT2;
 
 constexpr GLenum kept_place(std::size_t i) { return GL_COLOR_ATTACHMENT3 + static_cast<GLenum>(i); }
@@ -168,9 +169,11 @@ bool Passes::draw(const Program &program, const std::function<void(const Pass &p
     left_ = count(goes_on, 2, true);
     if (left_ > 0) return true;
     const auto about = [&](float value) { return count(value - within, value + within, false); };
-    const std::uint64_t both = about(eye_undecided + light_undecided);
+    const std::uint64_t both = about(eye_undecided + light_undecided),
+                        unlit = about(eye_passed + light_undecided);
     undecided_.rays += about(eye_undecided) + both;
-    undecided_.shadows += about(light_undecided) + both;
+    undecided_.shadows += about(light_undecided) + both + unlit;
+    undecided_.passed += about(eye_passed) + unlit;
     return true;
 }
 

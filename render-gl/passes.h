@@ -12,10 +12,12 @@
 
 namespace fathom::gl {
 
-// Rays that are not decided, of a picture's samples.
+// Rays that are not decided, of a picture's samples; and those that passed a surface without an
+// inside.
 struct Undecided {
     std::uint64_t rays = 0;    // from the eye
     std::uint64_t shadows = 0; // pixels' samples with a ray from a light
+    std::uint64_t passed = 0;  // from the eye
 };
 
 // What is drawn over: textures of the same size, `picks` 0 where there are none.

@@ -184,6 +184,7 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
     if (stopped || !good || glGetError() != GL_NO_ERROR) return std::nullopt;
     pixels.undecided = passes.undecided().rays;
     pixels.undecided_shadows = passes.undecided().shadows;
+    pixels.passed = passes.undecided().passed;
     return pixels;
 }
 

@@ -28,7 +28,7 @@ struct Pixels {
     std::vector<float> rgba;
     // Rays from the eye; of these, and of samples with rays from lights, those that ended neither in
     // a hit nor in a miss.
-    std::uint64_t rays = 0, undecided = 0, undecided_shadows = 0;
+    std::uint64_t rays = 0, undecided = 0, undecided_shadows = 0, passed = 0;
 };
 
 // Waits until all commands given so far are done.

@@ -110,6 +110,7 @@ std::optional<gl::Pixels> draw_cached(GlPainter::Impl &impl, const ir::Scene &sc
         if (sum) {
             for (std::size_t i = 0; i < sum->rgba.size(); ++i) sum->rgba[i] += pixels.rgba[i];
             sum->undecided += pixels.undecided;
+            sum->passed += pixels.passed;
         } else {
             sum = std::move(pixels);
         }
@@ -216,6 +217,7 @@ Picture drawn(GlPainter::Impl &impl, const PictureOptions &options) {
     picture.rays = pixels->rays;
     picture.undecided = pixels->undecided;
     picture.undecided_shadows = pixels->undecided_shadows;
+    picture.passed = pixels->passed;
     if (options.linear) {
         picture.linear = std::move(pixels->rgba);
         for (std::size_t i = 3; i < picture.linear.size(); i += 4) picture.linear[i] = 1; // opaque

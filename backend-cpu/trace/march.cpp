@@ -216,6 +216,7 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
         }
         std::erase_if(active, judged);
     }
+    for (const Walk &walk : walks) worker.work.passed += walk.passed;
     refine(worker, rays, crossings, landings);
 }
 

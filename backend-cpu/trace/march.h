@@ -22,6 +22,7 @@ struct Work {
     std::uint64_t evaluations = 0; // of the distance, for whatever purpose
     std::uint64_t undecided = 0;   // rays from the eye that ended neither in a hit nor in a miss
     std::uint64_t undecided_shadows = 0; // rays from lights that ran out of evaluations
+    std::uint64_t passed = 0; // rays from the eye that passed a surface without an inside
     // With pruning: of those, how many a far cell answered; what cells near the surface keep of the
     // shapes, all told; and how many evaluations that were.
     std::uint64_t far = 0, near = 0;

@@ -21,8 +21,8 @@ Work &Work::operator+=(const Work &other) {
     evaluations += other.evaluations;
     undecided += other.undecided;
     undecided_shadows += other.undecided_shadows;
-    far += other.far;
-    near += other.near;
+    passed += other.passed;
+    far += other.far, near += other.near;
     near_shapes += other.near_shapes;
     return *this;
 }

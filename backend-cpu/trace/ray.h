@@ -17,6 +17,7 @@ struct Walk {
     float film = 0;    // how far it has come since the last that was, or since the first
     int nearing = 0;   // samples in a row within an estimate's tolerance, each nearer than the last
     bool aims = false; // the last step was to change the sign
+    bool passed = false; // it has gone through what has no inside
 };
 
 // From which value on a lower bound of the distance will do: below it, whether the ray has arrived
@@ -42,6 +43,7 @@ inline Verdict judge(Walk &walk, const Lengths &lengths) {
                        ? Verdict::Crossed
                        : Verdict::Touches;
         walk.touches = 0; // it has passed, and begins anew
+        walk.passed |= walk.d > ir::shading::across * walk.film;
         walk.before = walk.stride = walk.reached = 0;
     }
     const Verdict inside =

@@ -9,13 +9,14 @@ int fathom_paint = -2; // of what the ray hit
 int fathom_end = 0;    // of the ray: 0 a miss, 1 a hit, 2 undecided, 3 it goes on in another pass
 bool fathom_shadow_undecided = false;
 $if PASSES
+bool fathom_passed = false; // the ray has gone through what has no inside
 
 // A draw takes at most fathom_turns steps a ray. What a ray that goes on needs is kept, and given back to the next draw:
 //   0  the ray from the eye: t, before, stride, reached; one from a light: t of the hit, s, stride, shadow
 //   1  of that from a light: at, quiet; of one from the eye to an estimate: nearing
 //   2  the colour without that light
 //   3  the steps, the touches (+ 16 where it aims) or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
-//      eye's ray is undecided, and 2 where one from a light is
+//      eye's ray is undecided, 2 where one from a light is, and 4 where the eye's ray has gone through what has no inside
 uniform int fathom_turns, fathom_budget;
 #ifdef FATHOM_BEGINS // the host never lets rays go on
 const bool fathom_resumed = false;
@@ -107,7 +108,8 @@ $if PASSES
         if (fathom_light_kept >= 0) {
             fathom_steps = steps;
             fathom_end = mod(more.w, 2.0) > 0.0 ? 2 : 1;
-            fathom_shadow_undecided = more.w > 1.0;
+            fathom_shadow_undecided = mod(more.w, 4.0) > 1.0;
+            fathom_passed = more.w > 3.0;
             return t;
         }
         before = kept.y;
@@ -118,6 +120,7 @@ $end
 $if ESTIMATED
         nearing = int(fathom_kept(fathom_kept_1).x);
 $end
+        fathom_passed = more.w > 3.0;
         aims = more.y > 15.0;
         touches = int(more.y) - (aims ? 16 : 0);
         if (touches > 0) {
@@ -225,6 +228,9 @@ $# What is touched is passed, with ever longer steps, until the field says what 
         float film = 0.25 * fathom_slack_at(t);
         if (phase == 0 && !(d < -film)$NO_ESTIMATE && !(d <= 0.0 && touches >= $DEEP)) {
             if (d >= film) {
+$if PASSES
+                fathom_passed = fathom_passed || d > $ACROSS * passed;
+$end
                 touches = 0;
                 before = 0.0;
                 float ahead = d;
@@ -299,7 +305,7 @@ $end
 $if ESTIMATED
         fathom_keep_1 = vec4(float(nearing), 0.0, 0.0, 0.0);
 $end
-        fathom_keep_3 = vec4(float(steps), float(touches + (aims ? 16 : 0)), -1.0, 0.0);
+        fathom_keep_3 = vec4(float(steps), float(touches + (aims ? 16 : 0)), -1.0, fathom_passed ? 4.0 : 0.0);
     }
 $else
     if (fathom_end == 3) fathom_end = 2;

@@ -34,7 +34,7 @@ $if PASSES
         fathom_left = 1.0;
         return vec4(0.0);
     }
-    fathom_left = fathom_end == 2 ? 0.25 : 0.0;
+    fathom_left = fathom_end == 2 ? 0.25 : fathom_passed ? 0.125 : 0.0;
 $end
     if (fathom_mode == 1) return vec4(fathom_heat(fathom_steps), 1.0);
     vec3 color = vec3(0.0);

@@ -60,14 +60,16 @@ struct PictureOptions {
 /** `rgba`: rows from the top, 8 bits a channel, sRGB. Without memory for it, or after a
  *  cancellation, `complete` is false and what is missing is 0. Of options that no picture can have
  *  it is empty, and `remark` says why. A ray that is `undecided` ended
- *  neither in a hit nor in a miss: its steps were spent, or it touched a surface that it did not
- *  cross. It shows what it is nearest to. */
+ *  neither in a hit nor in a miss: its steps were spent. It shows what it is nearest to. A ray that
+ *  `passed` went through a surface without an inside, where the field is 0 and above 0 on both
+ *  sides, as where a cut ends in the plane of what it cuts: nothing of it is drawn. */
 struct Picture {
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgba;
     bool complete = false;
     std::uint64_t undecided = 0;         /**< rays from the eye */
     std::uint64_t undecided_shadows = 0; /**< rays from lights */
+    std::uint64_t passed = 0;            /**< rays from the eye */
     /** Where it was wanted: linear RGBA, the colours multiplied by alpha. */
     std::vector<float> linear;
     /** Where it was wanted: three numbers a pixel, the sums of its samples, linear. Sums of different

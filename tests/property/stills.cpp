@@ -367,7 +367,7 @@ TEST_CASE("a sheet as thin as a thousandth is seen whole") {
 TEST_CASE("what is far away, or a ground's size, changes nothing near") {
     const std::string solid = "camera(at: [3, 4, 5], look_at: [0, 0, 0], fov: 30deg)\n"
                               "box(1)\nsphere(0.6).translate(y: 0.8)\n"
-                                       "lighting(ambient_occlusion: 1, occlusion_reach: 0.3)\n";
+                              "lighting(ambient_occlusion: 1, occlusion_reach: 0.3)\n";
     const auto ground = [&](const char *size, const char *hidden = "") {
         return drawn(solid + "box([" + size + ", 1, " + size + "]).translate(y: -1)\n" + hidden);
     };

@@ -54,7 +54,8 @@ TEST_CASE("passes of a picture equal one long draw to the bit") {
     require_context();
     for (const std::string &text :
          {steep, "sphere(1)\nplane(Y, -1)\n" + camera,
-          "cylinder(radius: 0.4, height: 3).bend(0.4)\nlighting(skip: true)\n" + camera}) {
+          "cylinder(radius: 0.4, height: 3).bend(0.4)\nlighting(skip: true)\n" + camera,
+          "(box(2) - box(2).translate(x: 1)).rotate(0.3)\n" + camera}) {
         CAPTURE(text);
         const auto made = driver::compile_text("scene.sdf", text, "", {});
         REQUIRE(made.good());
@@ -66,8 +67,28 @@ TEST_CASE("passes of a picture equal one long draw to the bit") {
                 CHECK(passes.rgba == whole.rgba);
                 CHECK(passes.undecided == whole.undecided);
                 CHECK(passes.undecided_shadows == whole.undecided_shadows);
+                CHECK(passes.passed == whole.passed);
             }
         }
+    }
+}
+
+TEST_CASE("rays that go through what has no inside are counted, and grazes are not") {
+    require_context();
+    for (const auto &[text, sheet] :
+         {std::pair("box(2) - box(2).translate(x: 1)\n" + camera, true),
+          std::pair("implicit(p => abs(length(p) - 1))\n" + camera, true),
+          std::pair("box(2) | sphere(1.3) | torus(2, 0.2)\n" + camera, false)}) {
+        CAPTURE(text);
+        const auto made = driver::compile_text("scene.sdf", text, "", {});
+        REQUIRE(made.good());
+        const ir::View view = ir::view_of(made.scene, 0, 64.0 / 48);
+        const auto by_cpu = cpu::render(cpu::prepare(made.scene, view, 64, 48, 0), {});
+        const gl::Pixels by_gl = rendered(made.scene, 0, 1);
+        CHECK((by_cpu.work.passed > 20) == sheet);
+        CHECK((sheet || by_cpu.work.passed <= 3));
+        CHECK(std::abs(static_cast<double>(by_gl.passed) -
+                       static_cast<double>(by_cpu.work.passed)) <= 3);
     }
 }
 

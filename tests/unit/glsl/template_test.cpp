@@ -97,6 +97,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "DARK_LIGHT",
                                "WIDEST",
                                "PROBE",
+                               "ACROSS",
                                "BEYOND",
                                "SHARE",
                                "CLOSED_FROM",

@@ -59,14 +59,20 @@ std::vector<float> drawn(const gl::Program &program, const Scene &scene, double 
 }
 
 // Steps, distances and paints to the bit; colours to what a driver rounds otherwise in another text.
+// Where two places of a way from a light are as near, rounding decides which edge of a shadow is found.
 void check_alike(const gl::Program &a, const gl::Program &b, const Scene &scene, double away) {
     CHECK(drawn(a, scene, away, gl::Mode::Numbers) == drawn(b, scene, away, gl::Mode::Numbers));
     const auto one = drawn(a, scene, away, gl::Mode::Linear),
                other = drawn(b, scene, away, gl::Mode::Linear);
     REQUIRE(one.size() == other.size());
     float most = 0;
-    for (std::size_t i = 0; i < one.size(); ++i) most = std::max(most, std::abs(one[i] - other[i]));
-    CHECK(most < 1e-6f);
+    std::size_t apart = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        most = std::max(most, std::abs(one[i] - other[i]));
+        apart += std::abs(one[i] - other[i]) >= 1e-6f;
+    }
+    CHECK(most < 1e-4f);
+    CHECK(apart <= one.size() / 1000);
 }
 
 // Of two pictures of the same: by pixel the largest difference of a colour, in descending order;
