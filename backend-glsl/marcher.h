@@ -19,7 +19,8 @@
 // A text with `passes` is for a host of ours that draws a picture by passes (render-gl/passes.h): a
 // draw takes at most fathom_turns steps a ray, and what a ray that is not done needs to go on is
 // written beside the picture (march.glsl says what). There, and where a host draws through the noise
-// cache, the alpha of an undecided ray is 0.5. Every other text has one pass, and as many
+// cache, the alpha of an undecided ray is 0.5; by passes that of a ray that came close to something
+// on its way (ir/shading.h, CLOSE) is 0.875. Every other text has one pass, and as many
 // steps a ray as `max_steps`: a ray that has no more is undecided, and drawn as what it is nearest
 // to.
 #pragma once

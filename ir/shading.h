@@ -75,6 +75,10 @@
 //       it is counted: it did not graze, but went through what has no inside
 //   In a scene with ESTIMATES a touch is a hit.
 //
+//   CLOSE: a ray whose d was below the width of a pixel and grew again, and that ends in a miss or
+//   more than `behind` widths farther, may have passed what is thinner than a pixel. Where a picture
+//   has more samples only where one does not do, its pixel has more.
+//
 //   `begin` and `end`: with a box (`Frame::boxed`) its entry and exit, clipped to 0..far;
 //   else 0..far.
 //
@@ -211,5 +215,6 @@ inline constexpr std::array<float, 3> sky{1.1f, 1.15f, 1.25f}, soil{0.9f, 0.85f,
 inline constexpr float shoulder = 0.8f;
 inline constexpr float fade_from = 0.3f;
 inline constexpr int rough_samples = 4; // of a pixel where one does not do
+inline constexpr float behind = 8;      // pixels: what ends so far behind is another thing
 
 } // namespace fathom::ir::shading

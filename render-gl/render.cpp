@@ -164,13 +164,16 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
         }
     };
     const int samples = std::max(request.samples, 1);
+    std::vector<std::uint8_t> close(smooth ? pixels.rgba.size() / 4 : 0);
     draw_samples(0, samples, {}, 0, smooth ? 0.5 : 1, [&](std::size_t pixel, const float *sum) {
+        if (smooth) close[pixel] = sum[3] > 0.75f && sum[3] < 1;
         for (std::size_t c = 0; c < 4; ++c)
             pixels.rgba[4 * pixel + c] = sum[c] / static_cast<float>(samples);
         pixels.rays += static_cast<std::uint64_t>(samples);
     });
     if (smooth && !stopped && good) {
-        const std::vector<std::uint8_t> rough = rough_pixels(width, height, pixels.rgba);
+        std::vector<std::uint8_t> rough = rough_pixels(width, height, pixels.rgba);
+        for (std::size_t i = 0; i < rough.size(); ++i) rough[i] |= close[i];
         constexpr int most = ir::shading::rough_samples;
         draw_samples(1, most, rough, 0.5, 1, [&](std::size_t pixel, const float *sum) {
             if (!rough[pixel]) return;

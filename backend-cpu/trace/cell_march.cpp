@@ -27,9 +27,8 @@ class Marcher {
         }
         std::size_t first = 0;
         while (first < memory_.queue.size()) halt(memory_.queue[first++]);
-        for (std::size_t i = 0; i < rays_.size(); ++i)
-            worker_.work.passed += memory_.walks[i].passed;
         refine(worker_, rays_, memory_.crossings, landings_);
+        look_back(worker_, memory_.walks, landings_);
     }
 
   private:

@@ -154,6 +154,15 @@ void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> 
     }
 }
 
+void look_back(Worker &worker, std::span<const Walk> walks, std::span<Landing> landings) {
+    const Lengths lengths(worker.stage);
+    for (std::size_t i = 0; i < landings.size(); ++i) {
+        worker.work.passed += walks[i].passed;
+        landings[i].close =
+            was_close(walks[i], landings[i].end != RayEnd::Miss, landings[i].t, lengths);
+    }
+}
+
 namespace {
 
 void march_together(Worker &worker, std::span<const RayState> rays, std::span<Landing> landings,
@@ -216,8 +225,8 @@ void march_together(Worker &worker, std::span<const RayState> rays, std::span<La
         }
         std::erase_if(active, judged);
     }
-    for (const Walk &walk : walks) worker.work.passed += walk.passed;
     refine(worker, rays, crossings, landings);
+    look_back(worker, walks, landings);
 }
 
 } // namespace

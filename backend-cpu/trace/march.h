@@ -138,6 +138,7 @@ struct Landing {
     float t = -1; // negative: a miss
     int steps = 0;
     RayEnd end = RayEnd::Miss;
+    bool close = false; // shading.h, CLOSE
 };
 std::vector<Landing> cast(const Stage &stage, std::span<const Ray> rays, bool brute = false);
 Ray eye_ray(const Stage &stage, float x,

@@ -18,6 +18,7 @@ struct Walk {
     int nearing = 0;   // samples in a row within an estimate's tolerance, each nearer than the last
     bool aims = false; // the last step was to change the sign
     bool passed = false; // it has gone through what has no inside
+    float close = -1;    // where it was last within a pixel's width of something, and passed it
 };
 
 // From which value on a lower bound of the distance will do: below it, whether the ray has arrived
@@ -59,6 +60,15 @@ inline Verdict judge(Walk &walk, const Lengths &lengths) {
         return Verdict::Near;
     return touch ? Verdict::Touches : Verdict::GoOn;
 }
+// Whether a ray that ends at t has come CLOSE to something on its way.
+inline bool was_close(const Walk &walk, bool hit, float t, const Lengths &lengths) {
+    return walk.close >= 0 &&
+           !(hit && t - walk.close <= ir::shading::behind * lengths.width(walk.close));
+}
+
+// Of rays that have ended: which came CLOSE to something, and how many passed what has no inside.
+void look_back(Worker &worker, std::span<const Walk> walks, std::span<Landing> landings);
+
 // Where a ray that has come near lands: so far from the surface that a gradient does not cross it.
 inline Landing beside(const Walk &walk, const Lengths &lengths) {
     return {walk.t - 0.5f * lengths.tolerance(walk.t), walk.steps, RayEnd::Hit};
@@ -90,6 +100,8 @@ inline void go_back(Walk &walk, const Lengths &lengths, bool by_curvature) {
 
 inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
     const float d = walk.d;
+    if (walk.stride > 0 && d > walk.before && walk.before < lengths.width(walk.t - walk.stride))
+        walk.close = walk.t - walk.stride;
     const float span = std::max(walk.span, d);
     float next = brute ? std::max(0.1f * d, 0.125f * lengths.tolerance(walk.t)) : d;
     if (!brute && span > d) {

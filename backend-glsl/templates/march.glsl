@@ -9,14 +9,16 @@ int fathom_paint = -2; // of what the ray hit
 int fathom_end = 0;    // of the ray: 0 a miss, 1 a hit, 2 undecided, 3 it goes on in another pass
 bool fathom_shadow_undecided = false;
 $if PASSES
+bool fathom_close = false;  // ir/shading.h, CLOSE
 bool fathom_passed = false; // the ray has gone through what has no inside
 
 // A draw takes at most fathom_turns steps a ray. What a ray that goes on needs is kept, and given back to the next draw:
 //   0  the ray from the eye: t, before, stride, reached; one from a light: t of the hit, s, stride, shadow
-//   1  of that from a light: at, quiet; of one from the eye to an estimate: nearing
+//   1  of that from a light: at, quiet; of one from the eye: to an estimate nearing, where it was close
 //   2  the colour without that light
 //   3  the steps, the touches (+ 16 where it aims) or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
-//      eye's ray is undecided, 2 where one from a light is, and 4 where the eye's ray has gone through what has no inside
+//      eye's ray is undecided, 2 where one from a light is, 4 where the eye's ray has gone through what has no inside, and
+//      8 where it has been close to something
 uniform int fathom_turns, fathom_budget;
 #ifdef FATHOM_BEGINS // the host never lets rays go on
 const bool fathom_resumed = false;
@@ -66,9 +68,13 @@ float fathom_tolerance(float t) {
     return fathom_tolerance_base + fathom_tolerance_slope * t;
 }
 
+float fathom_width_at(float t) {
+    return fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;
+}
+
 float fathom_arm(float t) {
-    float width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;
-    return $ARM * fathom_tolerance(t) + min($NORMAL_SLACK * (fathom_slack + $FLOAT_SLACK * $RADIUS), $WIDEST * width);
+    return $ARM * fathom_tolerance(t) +
+           min($NORMAL_SLACK * (fathom_slack + $FLOAT_SLACK * $RADIUS), $WIDEST * fathom_width_at(t));
 }
 $if BOXED
 
@@ -99,6 +105,7 @@ $if ESTIMATED
     int nearing = 0; // samples in a row within the tolerance, each nearer than the one before
 $end
 $if PASSES
+    float close = -1.0;
     if (fathom_resumed) {
         vec4 kept = fathom_kept(fathom_kept_0);
         vec4 more = fathom_kept(fathom_kept_3);
@@ -109,7 +116,8 @@ $if PASSES
             fathom_steps = steps;
             fathom_end = mod(more.w, 2.0) > 0.0 ? 2 : 1;
             fathom_shadow_undecided = mod(more.w, 4.0) > 1.0;
-            fathom_passed = more.w > 3.0;
+            fathom_passed = mod(more.w, 8.0) > 3.0;
+            fathom_close = more.w > 7.0;
             return t;
         }
         before = kept.y;
@@ -117,8 +125,10 @@ $if PASSES
 $if HAS_SAFE_RADIUS
         reached = kept.w;
 $end
+        vec4 others = fathom_kept(fathom_kept_1);
+        close = others.y;
 $if ESTIMATED
-        nearing = int(fathom_kept(fathom_kept_1).x);
+        nearing = int(others.x);
 $end
         fathom_passed = more.w > 3.0;
         aims = more.y > 15.0;
@@ -168,7 +178,7 @@ $end
             if (!(t <= end + fathom_slack)) break;
             vec3 p = origin + t * direction;
 $if CACHED
-            fathom_width = fathom_orthographic != 0 ? fathom_pixel : fathom_pixel * t;
+            fathom_width = fathom_width_at(t);
             if (phase == 0) fathom_step(t, before, stride, steps);
 $end
 $if HAS_SAFE_RADIUS
@@ -295,6 +305,7 @@ $include march_ahead
 $if PASSES
     fathom_taken = steps - begun;
     if (fathom_end == 3 && steps >= fathom_budget) fathom_end = 2;
+    fathom_close = close >= 0.0 && !(fathom_end > 0 && t - close <= $BEHIND * fathom_width_at(close));
     if (fathom_end == 3) {
         fathom_goes_on = true;
 $if HAS_SAFE_RADIUS
@@ -302,8 +313,9 @@ $if HAS_SAFE_RADIUS
 $else
         fathom_keep_0 = vec4(t, before, stride + mix(0.0, pace, touches > 0), passed);
 $end
+        fathom_keep_1 = vec4(0.0, close, 0.0, 0.0);
 $if ESTIMATED
-        fathom_keep_1 = vec4(float(nearing), 0.0, 0.0, 0.0);
+        fathom_keep_1.x = float(nearing);
 $end
         fathom_keep_3 = vec4(float(steps), float(touches + (aims ? 16 : 0)), -1.0, fathom_passed ? 4.0 : 0.0);
     }

@@ -1,5 +1,8 @@
 $# Statements: the next step of a ray that found d at t, and may go `ahead`. Without branches where it can be: drivers on
 $# the processor compute both sides.
+$if PASSES
+            close = mix(close, t - stride, stride > 0.0 && ahead > before && before < fathom_width_at(t - stride));
+$end
             float next = ahead;
             bool straight = stride > 0.0;
 $if HAS_SAFE_RADIUS

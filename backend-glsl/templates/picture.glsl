@@ -61,7 +61,11 @@ $end
     if (fathom_mode == 2)
         return vec4(float(fathom_steps), t, float(fathom_paint), fathom_end == 2 ? 2.0 : t < 0.0 ? 0.0 : 1.0);
 $if COUNTED
+$if PASSES
+    float opaque = fathom_end == 2 ? 0.5 : fathom_close ? 0.875 : 1.0;
+$else
     float opaque = fathom_end == 2 ? 0.5 : 1.0;
+$end
 $if CACHED
 #if !defined(FATHOM_CACHE) && !defined(FATHOM_CACHE_LEARN)
     opaque = 1.0;

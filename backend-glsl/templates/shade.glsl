@@ -377,7 +377,7 @@ $if PASSES
                 fathom_keep_2 = vec4(color, 0.0);
                 fathom_keep_3.xzw = vec3(float(fathom_steps), float(i),
                                          (fathom_end == 2 ? 1.0 : 0.0) + (fathom_shadow_undecided ? 2.0 : 0.0) +
-                                             (fathom_passed ? 4.0 : 0.0));
+                                             (fathom_passed ? 4.0 : 0.0) + (fathom_close ? 8.0 : 0.0));
                 return color;
             }
 $end

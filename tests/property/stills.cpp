@@ -317,6 +317,28 @@ TEST_CASE("where one sample does not do there are more, and nowhere else") {
     CHECK(different(one, all) > 3 * different(smooth, all));
 }
 
+TEST_CASE("what is thinner than a pixel is not lost between the samples") {
+    const std::string bare =
+        "camera(at: [0, 0, 14], look_at: [0, 0, 0], fov: 20deg)\n"
+        "sphere(0.1).translate([-2, 0, -1])\nsphere(0.1).translate([2, 0, 1])\n"
+        "background([0, 0, 0])\n";
+    const std::string wire = bare + "box([0.02, 4, 0.02]).rotate(7deg, axis: Z).paint(white)\n";
+    const cpu::Picture without = drawn(bare, 0), with = drawn(wire, 0), once = drawn(wire, 1);
+    const auto rows = [&](const cpu::Picture &picture) {
+        int seen = 0;
+        for (int y = 0; y < height; ++y) {
+            bool here = false;
+            for (int x = 0; x < width; ++x)
+                here = here || byte(picture, x, y, 1) > byte(without, x, y, 1) + 8;
+            seen += here;
+        }
+        return seen;
+    };
+    const int high = 58; // rows that the wire crosses
+    CHECK(rows(once) < high / 2);
+    CHECK(rows(with) > high * 9 / 10);
+}
+
 TEST_CASE("where a cut is flush with what it cuts nothing is drawn, and nothing shades") {
     const std::string light = camera + "plane(Y, -1.3)\nlighting(ambient_occlusion: 0)\n"
                                        "sun(direction: [0.5, 0.8, 0.3])\n";

@@ -98,6 +98,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "WIDEST",
                                "PROBE",
                                "ACROSS",
+                               "BEHIND",
                                "BEYOND",
                                "SHARE",
                                "CLOSED_FROM",
@@ -230,7 +231,8 @@ Frame frame_of(std::string_view name, const Values &values) {
         return {
             scene + expanded("march") +
                 "void ahead(float t, float d, float before, float stride, float end, float span, "
-                "float reached) {\n    bool aims;\n    float ahead = d, tolerance = 0.1;\n",
+                "float reached) {\n    bool aims;\n    float ahead = d, tolerance = 0.1, close = "
+                "-1.0;\n",
             "}\n" + end};
     if (name == "shadow_ahead")
         return {marched + "void ahead(vec3 q, vec3 l, float s, bool mark, float shadow, float "
