@@ -79,6 +79,7 @@ Values values_of(const MarcherOptions &options) {
         {"WIDEST", float_literal(shading::widest)},
         {"DARK_LIGHT", float_literal(shading::dark_light)},
         {"PROBE", float_literal(shading::probe)},
+        {"LIFT", float_literal(shading::lift)},
         {"BEHIND", float_literal(shading::behind)},
         {"ACROSS", float_literal(shading::across)},
         {"DEEP", fmt::to_string(shading::deep)},

@@ -69,10 +69,10 @@
 //   probe*slack(t)/4, and by twice the step before from then on, at most graze*tolerance(t), so that
 //   whatever is thicker than a few slacks is met at any angle.
 //     d < -slack(t)/4, or d <= 0 for the deep-th time in a row: a hit between the last sample that was
-//       above 0, or the first of the touch, and t (REFINED)
-//     d >= slack(t)/4: it has passed, and marches on as from a beginning. Where d is above `across`
-//       times the way since the last sample that was not above 0, or since the first of the touch,
-//       it is counted: it did not graze, but went through what has no inside
+//       above 0 and t (REFINED)
+//     d >= slack(t)/4: it has passed, and marches on as from a beginning. It is counted where d is
+//       above `across` times the way since the last sample that was above 0, else it grazed, and
+//       above (2*slack + float_slack*t + float_slack*radius)/4: rounding of what is large is no film
 //   In a scene with ESTIMATES a touch is a hit.
 //
 //   CLOSE: a ray whose d was below the width of a pixel and grew again, and that ends in a miss or
@@ -99,7 +99,8 @@
 //       and what leads to it is free: -span^2/change - tolerance(t)/2. Never less than d.
 //     span = max(span, d); reached = span with before = d
 //
-// SHADING at the hit point p = o + t*dir, h = step(t), n = normal(p, h), v = -dir
+// SHADING at the hit point p = o + t*dir, h = step(t), n = normal(p - lift*h*dir, h), v = -dir; in front
+//   of the surface, since behind it the field is 0 where two parts meet
 //   s = hit(p); the surface is s.paint (below 0: the last one); its material is evaluated at
 //   (s.point, n', s.extra), where n' is the normal in the paint's space:
 //   hit(p + h*n).point - s.point, normalised (n where that is 0).
@@ -143,12 +144,12 @@
 //     d = f(q + s*l)
 //     if d < -slack(s)/4, or estimate*d < dark*angle*s (ESTIMATES): all dark, done
 //     if d < slack(s)/4: TOUCHES, as for rays from the eye, by steps of at most angle*s/2. What is passed
-//       has shaded nothing: shadow and `at` are again what they were where d >= closed_from*angle*s
-//       last, and quiet = s*(1 - beyond*angle)
+//       and not grazed (d above `across` times such a step) has shaded nothing: shadow and `at` are
+//       again what they were where d >= closed_from*angle*s last, and quiet = s*(1 - beyond*angle)
 //     edge = shadow*angle*s: what is farther changes nothing
 //     if s is a mark, d < edge and s <= quiet: closed(s).
-//       quiet = s - calm*(near - edge): what is so much farther than the edge is not looked at again
-//       before that. Where closed(s) < shadow: shadow = max(closed(s), darkest), at = s
+//       quiet = s - calm*(min(near, g) - edge): what is so much farther than the edge is not looked at
+//       again before that (where two parts are as near, the slope is small, and near too large). Where closed(s) < shadow: shadow = max(closed(s), darkest), at = s
 //     The ball of radius d about s is free; up to s - (d - edge), with the new
 //       edge, nothing in it is nearer than that. s = the greatest of s - d and the first mark that is
 //       before s, not above s - (d - edge) and not above quiet
@@ -181,7 +182,8 @@ namespace fathom::ir::shading {
 inline constexpr float float_slack = 1e-6f;
 inline constexpr float normal_slack = 50;
 inline constexpr float arm = 0.25f;   // tolerances
-inline constexpr float widest = 0.5f; // pixels
+inline constexpr float lift = 2;      // arms
+inline constexpr float widest = 0.2f; // pixels
 inline constexpr float min_slope = 1.0f / 1024;
 inline constexpr float relaxation =
     0.9f; // performance.md, 2: best of those measured on scenes with L = 1
@@ -202,9 +204,9 @@ inline constexpr float marks = 0.5f, closed_from = 1.0625f; // of what the light
 inline constexpr float jump = 2, graze = 1.0f / 16;         // tolerances
 inline constexpr int refinements = 12;
 inline constexpr float refined = 1.0f / 2048; // of a tolerance
-inline constexpr float across = 1.0f / 16; // the slope behind a touch, from which on it is no graze
-inline constexpr float probe = 16;         // slack/4: the first step beyond what is touched
-inline constexpr int deep = 5;             // touches not above 0 that are a solid, one less
+inline constexpr float across = 1.0f / 32; // the slope behind a touch, from which on it is no graze
+inline constexpr float probe = 8;          // slack/4: the first step beyond what is touched
+inline constexpr int deep = 2;             // touches not above 0 that are a solid, one less
 inline constexpr int nearing = 3;          // samples, by which an estimate is hit
 inline constexpr int many_steps = 256;     // red in a picture of steps
 inline constexpr int budget = 65536;       // evaluations a ray, where the scene does not say

@@ -14,7 +14,7 @@ struct Walk {
     float span = 0, reached = 0; // how far d reaches, and `before`; where that is more than they
     int steps = 0;
     int touches = 0;   // 1, and how many samples in a row of a touch were not above 0; 0: none
-    float film = 0;    // how far it has come since the last that was, or since the first
+    float film = 0;    // how far it has come since the last that was above 0
     int nearing = 0;   // samples in a row within an estimate's tolerance, each nearer than the last
     bool aims = false; // the last step was to change the sign
     bool passed = false; // it has gone through what has no inside
@@ -44,7 +44,8 @@ inline Verdict judge(Walk &walk, const Lengths &lengths) {
                        ? Verdict::Crossed
                        : Verdict::Touches;
         walk.touches = 0; // it has passed, and begins anew
-        walk.passed |= walk.d > ir::shading::across * walk.film;
+        walk.passed |= walk.d > std::max(ir::shading::across * walk.film,
+                                         0.25f * (lengths.slack_at(walk.t) + lengths.coarse));
         walk.before = walk.stride = walk.reached = 0;
     }
     const Verdict inside =
@@ -136,13 +137,15 @@ inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
 // On from a sample that touches: a few slacks first, then ever more, so that whatever is thicker than
 // these is met at any angle.
 inline void pass(Walk &walk, float end, const Lengths &lengths) {
-    if (walk.touches == 0) walk.stride = 0;
-    if (walk.touches == 0 || walk.d > 0) {
-        walk.touches = 1;
-        walk.film = 0;
-        walk.before = std::max(walk.d, 0.0f);
+    if (walk.touches == 0) {
+        walk.film = walk.stride;
+        walk.stride = 0;
     }
-    if (!(walk.d > 0)) ++walk.touches;
+    if (walk.d > 0) {
+        walk.film = 0;
+        walk.before = walk.d;
+    }
+    walk.touches = walk.d > 0 ? 1 : std::max(walk.touches, 1) + 1;
     const float least = ir::shading::probe * 0.25f * lengths.slack_at(walk.t);
     const float most = std::max(least, ir::shading::graze * lengths.tolerance(walk.t));
     const float next = std::min(std::max(least, 2 * walk.stride), most);

@@ -29,8 +29,10 @@ struct Points {
 };
 
 void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
-    std::vector<Vec> gradient(at.size());
-    gradients(worker, at.p.data(), at.h.data(), gradient.data(), at.size());
+    std::vector<Vec> gradient(at.size()), above(at.size());
+    for (std::size_t k = 0; k < at.size(); ++k)
+        above[k] = at.p[k] - shading::lift * at.h[k] * rays[at.ray[k]].direction;
+    gradients(worker, above.data(), at.h.data(), gradient.data(), at.size());
     for (std::size_t k = 0; k < at.size(); ++k) {
         const float slope = length(gradient[k]);
         at.slope.push_back(slope);

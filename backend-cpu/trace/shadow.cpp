@@ -98,6 +98,11 @@ class Shadows {
         }
     }
 
+    // The step after so many steps of a touch.
+    static float probe(int probes, float film, float light) {
+        const float least = shading::probe * film;
+        return std::max(least, std::min(std::ldexp(least, probes), light / 2));
+    }
     // The way on from a sample, by TOUCHES. It may be that all is dark.
     float passed(State &state, float d) const {
         const float film = 0.25f * lengths_.slack_at(state.s), light = angle_ * state.s;
@@ -110,11 +115,11 @@ class Shadows {
         if (d < film) {
             if (state.touches == 0) state.probes = 0;
             state.touches = d > 0 ? 1 : std::max(state.touches, 1) + 1;
-            const float least = shading::probe * film;
-            return std::max(least, std::min(std::ldexp(least, state.probes++), light / 2));
+            return probe(state.probes++, film, light);
         }
         if (state.touches > 0) {
             state.touches = 0;
+            if (!(d > shading::across * probe(state.probes - 1, film, light))) return d;
             state.shadow = state.clear, state.at = state.clear_at, state.slope = state.clear_slope;
             state.quiet = state.s * (1 - shading::beyond * angle_);
         } else if (d >= shading::closed_from * light) {
@@ -145,7 +150,8 @@ class Shadows {
             const Close &close = close_[j];
             State &state = states_[close.ray];
             const float closed = near_[j] / (angle_ * close.s);
-            state.quiet = close.s - shading::calm * (near_[j] - state.shadow * angle_ * close.s);
+            state.quiet = close.s - shading::calm * (std::min(near_[j], values_[j]) -
+                                                     state.shadow * angle_ * close.s);
             if (closed < state.shadow) {
                 state.shadow = std::max(closed, shading::darkest);
                 state.at = close.s;

@@ -95,7 +95,7 @@ float fathom_march(vec3 origin, vec3 direction, float begin, float end) {
     float before = 0.0;
     float stride = 0.0;
     int touches = 0;   // 1, and how many samples in a row of a touch were not above 0; 0: none
-    float passed = 0.0, pace = 0.0; // how far it has come since the last that was, or since the first; its last step
+    float passed = 0.0, pace = 0.0; // how far it has come since the last that was above 0; its last step
     bool aims = false; // the last step was to change the sign
 $if HAS_SAFE_RADIUS
     float reached = 0.0;
@@ -239,7 +239,8 @@ $# What is touched is passed, with ever longer steps, until the field says what 
         if (phase == 0 && !(d < -film)$NO_ESTIMATE && !(d <= 0.0 && touches >= $DEEP)) {
             if (d >= film) {
 $if PASSES
-                fathom_passed = fathom_passed || d > $ACROSS * passed;
+                fathom_passed = fathom_passed ||
+                                d > max($ACROSS * passed, film + 0.25 * (fathom_slack + $FLOAT_SLACK * $RADIUS));
 $end
                 touches = 0;
                 before = 0.0;
@@ -248,13 +249,15 @@ $include march_ahead
                 ++turn;
                 continue;
             }
-            if (touches == 0) pace = 0.0;
-            if (touches == 0 || d > 0.0) {
-                touches = 1;
-                passed = 0.0;
-                before = max(d, 0.0);
+            if (touches == 0) {
+                passed = stride;
+                pace = 0.0;
             }
-            if (!(d > 0.0)) ++touches;
+            if (d > 0.0) {
+                passed = 0.0;
+                before = d;
+            }
+            touches = d > 0.0 ? 1 : max(touches, 1) + 1;
             stride = 0.0;
             pace = min(max($PROBE * film, 2.0 * pace), max($PROBE * film, $GRAZE * tolerance));
             float to = mix(t + pace, min(t + pace, end), t < end);

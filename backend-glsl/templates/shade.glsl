@@ -91,20 +91,23 @@ $else
 $end
             ++turn;
 $# What is touched is passed; so it has shaded nothing.
+            if (f < film && touches == 0) probes = 0;
+            float least = $PROBE * film;
+            float probe = max(least, min(least * exp2(float(f < film ? probes : probes - 1)), 0.5 * angle * s));
             if (f < film) {
-                if (touches == 0) probes = 0;
                 touches = f > 0.0 ? 1 : max(touches, 1) + 1;
-                float least = $PROBE * film;
-                s -= max(least, min(least * exp2(float(probes)), 0.5 * angle * s));
+                s -= probe;
                 ++probes;
                 mark = false;
                 continue;
             }
             if (touches > 0) {
                 touches = 0;
-                shadow = clear;
-                at = clear_at;
-                quiet = s * (1.0 - $BEYOND * angle);
+                if (f > $ACROSS * probe) {
+                    shadow = clear;
+                    at = clear_at;
+                    quiet = s * (1.0 - $BEYOND * angle);
+                }
             }
             if (f >= $CLOSED_FROM * angle * s) {
                 clear = shadow;
@@ -203,7 +206,7 @@ $end
             shadow = closed;
             break;
         }
-        quiet = x - $CALM * (near - shadow * angle * x);
+        quiet = x - $CALM * (min(near, value) - shadow * angle * x);
         if (closed < shadow) {
             shadow = max(closed, $DARKEST);
             at = x;
@@ -224,6 +227,7 @@ $end
 vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
     vec3 p = origin + t * direction;
     float h = fathom_arm(t);
+    vec3 above = p - $LIFT * h * direction;
     vec3 g = vec3(0.0);
     vec3 n = -direction;
     float slope = 0.0;
@@ -243,7 +247,7 @@ $end
 $if TWICE
     for (int i = $ZERO; i < 4; ++i) {
         vec3 e = fathom_corner(i);
-        g += e * $SHADED(p + h * e);
+        g += e * $SHADED(above + h * e);
     }
     g *= 0.75 / h;
     slope = length(g);
@@ -261,7 +265,7 @@ $if !SKIP_SHADING
     for (int i = $ZERO + done; i < taps$AND_PRESENT; ++i) {
         bool outward = i > 3 && i < 9;
         float away = mix(x, reach * float(i - 3), outward);
-        vec3 place = p + away * n;
+        vec3 place = mix(p + away * n, above, float(i < 4));
         vec3 e = fathom_corner(i - 9 * int(i > 3));
         if (!outward) place += h * e;
         float f = $SHADED(place);
@@ -305,7 +309,7 @@ $end
     }
 $else
 $if !TWICE
-    for (int i = $ZERO; i < taps$AND_PRESENT; ++i) g += fathom_corner(i) * $SHADED(p + h * fathom_corner(i));
+    for (int i = $ZERO; i < taps$AND_PRESENT; ++i) g += fathom_corner(i) * $SHADED(above + h * fathom_corner(i));
     g *= 0.75 / h;
     slope = length(g);
     if (slope > 0.0) n = g / slope;

@@ -317,6 +317,24 @@ TEST_CASE("where one sample does not do there are more, and nowhere else") {
     CHECK(different(one, all) > 3 * different(smooth, all));
 }
 
+TEST_CASE("where parts meet in one plane their seam is not seen") {
+    const std::string light = "camera(at: [3, 4, 5], look_at: [0, 0.3, 0], fov: 25deg)\n"
+                              "plane(Y, -0.5)\nsun(direction: [0.5, 0.8, 0.3])\n";
+    // parts that abut, and the same solid in one
+    const std::pair<const char *, const char *> pairs[] = {
+        {"for i in 0..4 { for j in 0..4 { box(0.5).translate([0.5*i - 0.75, 0.5*j - 0.25, 0]) } }",
+         "box([2, 2, 0.5]).translate(y: 0.5)"},
+        {"for i in 0..5 { cylinder(0.7, 0.3).translate(y: 0.3*i - 0.35) }",
+         "cylinder(0.7, 1.5).translate(y: 0.25)"},
+        {"for i in 0..3 { box([1, 0.4, 1]).translate(y: 0.4*i - 0.3).rotate(0.3) }",
+         "box([1, 1.2, 1]).translate(y: 0.1).rotate(0.3)"},
+    };
+    for (const auto &[parts, whole] : pairs) {
+        INFO(parts);
+        CHECK(different(drawn(light + parts + "\n"), drawn(light + whole + "\n")) <= few);
+    }
+}
+
 TEST_CASE("what is thinner than a pixel is not lost between the samples") {
     const std::string bare =
         "camera(at: [0, 0, 14], look_at: [0, 0, 0], fov: 20deg)\n"

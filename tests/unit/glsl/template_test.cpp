@@ -99,6 +99,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "PROBE",
                                "ACROSS",
                                "BEHIND",
+                               "LIFT",
                                "BEYOND",
                                "SHARE",
                                "CLOSED_FROM",

@@ -71,7 +71,7 @@ void check_alike(const gl::Program &a, const gl::Program &b, const Scene &scene,
         most = std::max(most, std::abs(one[i] - other[i]));
         apart += std::abs(one[i] - other[i]) >= 1e-6f;
     }
-    CHECK(most < 1e-4f);
+    CHECK(most < 1e-3f); // a quarter of a byte's step
     CHECK(apart <= one.size() / 1000);
 }
 
