@@ -17,8 +17,11 @@ Pixels CachedView::read_pixels() const {
     for (int y = targets_.height; y-- > 0;)
         pixels.rgba.insert(pixels.rgba.end(), upward.begin() + static_cast<std::ptrdiff_t>(row) * y,
                            upward.begin() + static_cast<std::ptrdiff_t>(row) * (y + 1));
-    for (std::size_t i = 3; i < pixels.rgba.size(); i += 4)
-        pixels.undecided += pixels.rgba[i] < 0.75f; // an undecided ray's is 0.5 (marcher.h)
+    for (std::size_t i = 3; i < pixels.rgba.size(); i += 4) // 0.5, 0.875 or 1 (marcher.h)
+        if (pixels.rgba[i] < 0.75f)
+            ++pixels.undecided;
+        else
+            pixels.rgba[i] = 1;
     return pixels;
 }
 

@@ -169,6 +169,8 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
         if (smooth) close[pixel] = sum[3] > 0.75f && sum[3] < 1;
         for (std::size_t c = 0; c < 4; ++c)
             pixels.rgba[4 * pixel + c] = sum[c] / static_cast<float>(samples);
+        if (mode == Mode::Linear && pixels.rgba[4 * pixel + 3] > 0.75f) // some ray was close
+            pixels.rgba[4 * pixel + 3] = 1;
         pixels.rays += static_cast<std::uint64_t>(samples);
     });
     if (smooth && !stopped && good) {
@@ -177,7 +179,7 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
         constexpr int most = ir::shading::rough_samples;
         draw_samples(1, most, rough, 0.5, 1, [&](std::size_t pixel, const float *sum) {
             if (!rough[pixel]) return;
-            for (std::size_t c = 0; c < 4; ++c)
+            for (std::size_t c = 0; c < 3; ++c)
                 pixels.rgba[4 * pixel + c] = (pixels.rgba[4 * pixel + c] + sum[c]) / most;
             pixels.rays += most - 1;
         });
