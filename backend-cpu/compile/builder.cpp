@@ -29,7 +29,7 @@ Value Builder::source(Program::Shared what, ir::Type type) {
             known.component == what.component)
             return it->second;
     }
-    ValueInfo info{type, true, 0, {}, static_cast<std::uint32_t>(code_.sources.size())};
+    ValueInfo info{type, true, false, 0, {}, static_cast<std::uint32_t>(code_.sources.size())};
     Value value = code_.values.add(info);
     code_.sources.push_back({what, value});
     known_sources_.emplace(key, value);
@@ -66,7 +66,7 @@ Value Builder::param(std::uint32_t param, std::uint32_t component, ir::Type type
 }
 
 Value Builder::variable(ir::Type type, bool shared, std::uint16_t level) {
-    return code_.values.add({type, shared, level, {}, ValueInfo::no_source});
+    return code_.values.add({type, shared, false, level, {}, ValueInfo::no_source});
 }
 
 std::optional<float> Builder::number_of(Value value) const {
@@ -94,7 +94,7 @@ std::vector<Value> Builder::instruction(InstructionKind kind, std::uint32_t payl
     std::vector<Value> outs;
     for (ir::Type type : types)
         outs.push_back(code_.values.add(
-            {type, made.once, made.level, code_.instructions.next(), ValueInfo::no_source}));
+            {type, made.once, false, made.level, code_.instructions.next(), ValueInfo::no_source}));
     code_.instructions.add(std::move(made));
     return outs;
 }
@@ -143,14 +143,17 @@ std::vector<Value> Builder::emit(Kernel kernel, std::span<const Value> in, bool 
             return outputs_of(known);
     }
     made.kernel = kernel;
-    for (Value value : operands) made.level = std::max(made.level, code_.values[value].level);
+    for (Value value : operands) {
+        made.level = std::max(made.level, code_.values[value].level);
+        code_.values[value].used = true;
+    }
     made.out = code_.values.next();
     made.outs = static_cast<std::uint32_t>(kernel_outputs(kernel));
     made.in = std::move(operands);
     InstructionId id = code_.instructions.next();
     for (std::uint32_t i = 0; i < made.outs; ++i)
         code_.values.add(
-            {kernel_output_type(kernel), made.once, made.level, id, ValueInfo::no_source});
+            {kernel_output_type(kernel), made.once, false, made.level, id, ValueInfo::no_source});
     code_.instructions.add(std::move(made));
     known_.emplace(key, id);
     return outputs_of(code_.instructions[id]);

@@ -20,6 +20,7 @@ using InstructionId = Id<Instruction>;
 struct ValueInfo {
     ir::Type type = ir::Type::Float;  // Float, Int or Bool
     bool shared = false;              // the same for every point
+    bool used = false;                // by an instruction that stands: fused into none
     std::uint16_t level = 0;          // how many loops it stands in
     InstructionId made_by;            // none: a parameter, a loop's variable, or a source
     std::uint32_t source = no_source; // index into Code::sources

@@ -22,6 +22,11 @@ class Matcher {
         if (instruction.kind != InstructionKind::Kernel || instruction.kernel != kernel) return {};
         return instruction.in;
     }
+    // The same of what is costly: not where the value is computed for something else already.
+    std::span<const Value> alone_by(Value value, Kernel kernel) const {
+        if (code_.values[value].used) return {};
+        return made_by(value, kernel);
+    }
 
   private:
     const Code &code_;
@@ -123,13 +128,13 @@ std::optional<Fused> fuse(Builder &builder, Kernel kernel, std::span<const Value
             return Fused{Kernel::LengthPositive3, {max[0][0], max[1][0], max[2][0]}};
     }
     if (kernel == Kernel::MinF)
-        if (auto b = match.made_by(in[1], Kernel::Ball); !b.empty()) {
+        if (auto b = match.alone_by(in[1], Kernel::Ball); !b.empty()) {
             std::vector<Value> all{in[0]};
             all.insert(all.end(), b.begin(), b.end());
             return Fused{Kernel::MinBall, std::move(all)};
         }
     if (kernel == Kernel::BlendSmooth)
-        if (auto b = match.made_by(in[1], Kernel::Ball); !b.empty()) {
+        if (auto b = match.alone_by(in[1], Kernel::Ball); !b.empty()) {
             std::vector<Value> all{in[0]};
             all.insert(all.end(), b.begin(), b.end());
             all.push_back(in[2]);
