@@ -133,10 +133,9 @@ Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
             else
                 left.push_back({box.lo, box.hi, d >= inquiry.allowed});
         }
-        if (depth % seam_depth == 0 && depth < deepest)
-            std::erase_if(left, [&](const Box &box) {
-                return (box.far || depth > 0) && is_seam(box, depth > 0 || searched);
-            });
+        if (depth % seam_depth == 0)
+            std::erase_if(
+                left, [&](const Box &box) { return (box.far || depth > 0) && is_seam(box, true); });
         if (left.empty()) break;
         if (depth == deepest || searched || left.size() > budget.divisions) {
             reach.decided = false;

@@ -13,6 +13,7 @@ constexpr std::size_t cuts = 8;        // that a slab is cut into
 constexpr std::size_t most_open = 3;   // at one time: a plane lies in two at most
 constexpr double most_thin = 32;       // all gaps or sheets together
 constexpr int most_cuttings = 24;      // floats cannot tell more cuts of cuts apart
+constexpr int end_cuttings = 3;        // … of what seems to reach the end of a box
 constexpr std::size_t most_levels = 6; // that are tried
 constexpr double along_gradient = 0.9; // the cosine from where a number may vary as the field does
 constexpr std::size_t most_runs = 400; // of the tape, for one box
@@ -135,15 +136,18 @@ struct Look {
                                 Place &rest) {
         Slab last = high ? open.back() : open.front();
         const std::size_t d = last.across;
-        if (high ? last.hi == place.ends[d][1] : last.lo == place.ends[d][0]) return std::nullopt;
+        const auto at_end = [&] {
+            return high ? last.hi == place.ends[d][1] : last.lo == place.ends[d][0];
+        };
         for (int round = 0; round < most_cuttings && !is_thin(last); ++round) {
+            if (round == end_cuttings && at_end()) return std::nullopt;
             std::vector<Slab> parts;
             cut_up(last, parts);
             leave_open(place, parts);
             if (parts.empty()) return std::nullopt; // the next one is where it ends
             last = high ? parts.back() : parts.front();
         }
-        if (!is_thin(last)) return std::nullopt;
+        if (!is_thin(last) || at_end()) return std::nullopt;
         // As much again: a plane between two slabs lies in both.
         const float more = std::max(last.hi - last.lo, 2 * ulp_of(last));
         (high ? last.lo : last.hi) += high ? -more : more;
@@ -169,11 +173,15 @@ struct Look {
             }
             if (const auto width = thin_out(place, open[d])) return width;
         }
+        if (strips == 0) return std::nullopt;
+        std::vector<std::size_t> order; // first those across which least is open
         for (std::size_t d = 0; d < directions.size(); ++d)
+            if (!open[d].empty()) order.push_back(d);
+        std::ranges::stable_sort(order, {}, [&](std::size_t d) { return open[d].size(); });
+        for (const std::size_t d : order)
             for (const bool high : {false, true}) {
                 Place rest;
-                if (strips == 0 || runs > most_runs) return std::nullopt;
-                if (open[d].empty()) continue;
+                if (runs > most_runs) return std::nullopt;
                 const auto stripped = strip(place, open[d], high, rest);
                 if (!stripped) continue;
                 if (const auto width = width_in(rest, strips - 1);
@@ -199,6 +207,16 @@ Points places_in(const Point &lo, const Point &hi) {
     return points;
 }
 
+double cosine(const Level &x, const Level &y) {
+    double product = 0, a = 0, b = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        product += x.gradient[i] * y.gradient[i];
+        a += x.gradient[i] * x.gradient[i];
+        b += y.gradient[i] * y.gradient[i];
+    }
+    return std::fabs(product) / std::sqrt(a * b);
+}
+
 // Whether a number may be what the field depends on somewhere here: it changes in the same direction.
 bool may_hold(const Level &level, const std::array<std::vector<float>, 4> &slopes) {
     for (std::size_t k = 0; k < slopes[0].size(); ++k) {
@@ -211,6 +229,24 @@ bool may_hold(const Level &level, const std::array<std::vector<float>, 4> &slope
         if (std::fabs(product) > along_gradient * std::sqrt(a * b)) return true;
     }
     return false;
+}
+
+// Those that are worth a look, in the order of the tape. Of many rather the earliest one of each
+// direction, on which the others of that direction are likely to depend.
+std::vector<Level> chosen_levels(const std::vector<Level> &levels,
+                                 const std::array<std::vector<float>, 4> &slopes) {
+    constexpr double parallel = 0.9999;
+    std::vector<Level> first, more;
+    for (const Level &level : levels) {
+        if (!may_hold(level, slopes) || !(level.lo < level.hi)) continue;
+        const bool new_way = std::ranges::none_of(
+            first, [&](const Level &one) { return cosine(one, level) > parallel; });
+        (new_way ? first : more).push_back(level);
+    }
+    first.insert(first.end(), more.begin(), more.end());
+    if (first.size() > most_levels) first.resize(most_levels);
+    std::ranges::sort(first, {}, [](const Level &level) { return level.where.step; });
+    return first;
 }
 
 } // namespace
@@ -235,9 +271,8 @@ std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cp
         std::array<std::vector<float>, 4> slopes;
         gradients_at(evaluator, tape, points, slopes);
         ++look.runs;
-        for (const Level &level : levels_in(evaluator, tape, boxes, lo, hi)) {
-            if (!may_hold(level, slopes) || !(level.lo < level.hi)) continue;
-            if (look.directions.size() == 3 + most_levels) break;
+        for (const Level &level :
+             chosen_levels(levels_in(evaluator, tape, boxes, lo, hi), slopes)) {
             look.directions.push_back({3, level});
             place.ends.push_back({level.lo, level.hi});
         }
