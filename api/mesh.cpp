@@ -24,13 +24,26 @@ Mesh without_mesh(MeshStatus status, std::string message) {
     return mesh;
 }
 
+// What shows a wall or a gap of a thickness: a sentence's end.
+std::string shown_by(double thickness, const fathom::mesh::Lattice &lattice, const ir::Box &solid) {
+    constexpr double showing = 1.5; // cells across what is thin
+    const double tolerance = thickness / showing;
+    if (!fathom::mesh::make_lattice(solid, tolerance, 0))
+        return ", thinner than the finest cells of any mesh: make it thicker, or leave it out";
+    double longest = 0;
+    for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, solid.hi[i] - solid.lo[i]);
+    const double now = lattice.side(lattice.level);
+    return fmt::format(", and cells have sides of {:.2g}: a tolerance of {:.2g} shows it, or a "
+                       "resolution of {:.0f}",
+                       now, tolerance, std::ceil(longest / tolerance));
+}
+
 // What would show what lies in some cells, by samples of it: a sentence's end.
 std::string advice_of(const ir::Scene &scene, const fathom::mesh::Settings &settings,
-                      const fathom::mesh::Octree &octree,
+                      const fathom::mesh::Made &made,
                       const std::vector<fathom::mesh::Cell> &cells) {
-    constexpr double showing = 1.5; // cells across what is thin
     fathom::mesh::Progress progress;
-    const fathom::mesh::Lattice &lattice = octree.lattice;
+    const fathom::mesh::Lattice &lattice = made.octree.lattice;
     std::vector<double> thick;
     std::size_t touch = 0;
     const fathom::mesh::Field field(scene, settings.time, settings.bounds);
@@ -43,16 +56,35 @@ std::string advice_of(const ir::Scene &scene, const fathom::mesh::Settings &sett
         return "parts of the solid touch there, and rounding leaves open where each ends, which no "
                "finer mesh tells: let them overlap a little, or move them by the same transforms";
     if (thick.empty()) return "a finer mesh or a tighter bound tells more";
-    const double thinnest = *std::ranges::min_element(thick), tolerance = thinnest / showing;
-    const std::string what = fmt::format("a wall or a gap there is about {:.2g} thick", thinnest);
-    if (!fathom::mesh::make_lattice(
-            {{lattice.at(0, 0), lattice.at(1, 0), lattice.at(2, 0)},
-             {lattice.at(0, lattice.cells(0)), lattice.at(1, lattice.cells(0)),
-              lattice.at(2, lattice.cells(0))}},
-            tolerance, 0))
-        return what +
-               ", thinner than the finest cells of any mesh: make it thicker, or leave it out";
-    return fmt::format("{}: a tolerance of {:.2g} shows it", what, tolerance);
+    const double thinnest = *std::ranges::min_element(thick);
+    return fmt::format("a wall or a gap there is about {:.2g} thick{}", thinnest,
+                       shown_by(thinnest, lattice, made.box));
+}
+
+// The same of cells that are drawn, where walls or gaps in many of them are thinner than they are.
+std::string advice_on_drawn(const ir::Scene &scene, const fathom::mesh::Settings &settings,
+                            const fathom::mesh::Made &made) {
+    constexpr std::size_t many = 8; // of these, one is thin: no mere edges and points
+    const fathom::mesh::Octree &octree = made.octree;
+    std::vector<fathom::mesh::Cell> cells = open_leaves(octree);
+    std::erase_if(cells, [&](const fathom::mesh::Cell &cell) {
+        return !octree.nodes[static_cast<std::size_t>(cell.node)].crossed();
+    });
+    fathom::mesh::Progress progress;
+    const fathom::mesh::Field field(scene, settings.time, settings.bounds);
+    const auto found = thin_in(field, octree.lattice, cells, threads_of(settings), progress);
+    double thinnest = 0;
+    std::size_t thin = 0;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        const fathom::mesh::Cell &cell = cells[k * cells.size() / found.size()];
+        const double thickness = found[k].thickness;
+        if (!(thickness > 0 && thickness < octree.lattice.side(cell.level))) continue;
+        if (thin == 0 || thickness < thinnest) thinnest = thickness;
+        ++thin;
+    }
+    if (many * thin < found.size() || thin == 0) return "";
+    return fmt::format("walls or gaps may have holes: one is about {:.2g} thick{}", thinnest,
+                       shown_by(thinnest, octree.lattice, made.box));
 }
 
 Mesh refused(const fathom::mesh::Made &made, const ir::Scene &scene,
@@ -60,7 +92,7 @@ Mesh refused(const fathom::mesh::Made &made, const ir::Scene &scene,
     Refusal why = refusal_of(made.failure, made.place);
     if (made.failure == fathom::mesh::Failure::Unseen)
         why.message = "the solid is thinner than the finest cells, if there is one; " +
-                      advice_of(scene, settings, made.octree, made.octree.undecided);
+                      advice_of(scene, settings, made, made.octree.undecided);
     return without_mesh(why.status, std::move(why.message));
 }
 
@@ -315,7 +347,9 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
                 options.certify ? certificate.undecided : made.octree.undecided;
             list_undecided(made.octree, undecided, mesh);
             if (!undecided.empty())
-                mesh.message = advice_of(ir_of(scene), settings, made.octree, undecided);
+                mesh.message = advice_of(ir_of(scene), settings, made, undecided);
+            else if (!options.certify)
+                mesh.message = advice_on_drawn(ir_of(scene), settings, made);
             mesh.vertices = std::move(made.mesh.vertices);
             mesh.normals = std::move(made.mesh.normals);
             mesh.triangles = std::move(made.mesh.triangles);

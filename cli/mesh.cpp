@@ -17,7 +17,10 @@ using Json = nlohmann::ordered_json;
 
 // What may be there and is not in the mesh.
 void say_undecided(const v1::Mesh &mesh, const std::string &what, Terminal &terminal) {
-    if (mesh.undecided_cells == 0) return;
+    if (mesh.undecided_cells == 0) {
+        if (!mesh.message.empty()) terminal.say(fmt::format("{}: {}", what, mesh.message));
+        return;
+    }
     const v1::Box &box = mesh.undecided.front();
     terminal.say(
         fmt::format("{}: {} cells may hold surface that the mesh does not show, the first "

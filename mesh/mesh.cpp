@@ -10,38 +10,104 @@ namespace {
 
 constexpr double box_work = 200e6; // operations on boxes, to find the solid's
 
-// Cells that are tangled are divided until none is, or their parts are the finest.
-Failure untangle(Made &made, const Field &field, const OctreeSettings &settings, std::size_t most,
-                 std::vector<Cell> &divided, Progress &progress) {
-    constexpr int most_rounds = 64;
-    for (int round = 0; round < most_rounds; ++round) {
-        if (made.octree.nodes.size() > most) return Failure::TooMany;
-        made.loops = find_loops(made.octree, settings.threads, progress);
-        if (progress.cancelled) return Failure::Cancelled;
-        if (made.loops.torn > 0) {
-            made.place = point_of(made.octree.lattice, made.loops.torn_at);
-            return Failure::Contradicted;
-        }
-        if (made.loops.tangled.empty()) return Failure::None;
-        if (round == 0 &&
-            thinner_in(field, made.octree, made.loops.tangled, settings.threads, progress)) {
-            // Their parts would be as tangled. They are listed, and those alone divided that have to be.
-            made.octree.undecided.insert(made.octree.undecided.end(), made.loops.tangled.begin(),
-                                         made.loops.tangled.end());
-            made.octree.settled = made.octree.lattice.level;
-            continue;
-        }
-        divided.insert(divided.end(), made.loops.tangled.begin(), made.loops.tangled.end());
-        divide(made.octree, field, made.loops.tangled, settings, progress);
-    }
-    return Failure::None;
-}
+constexpr std::size_t nodes_untangled = 250'000; // that may come of it, or
+constexpr std::size_t times_untangled = 4;       // so many times what there was
+constexpr std::size_t few_tangled = 64;          // cells that are divided unasked
+// Cells: a wall that lies at an angle to them is seen whole from their diagonal on.
+constexpr double shows_whole = 1.75;
 
 OctreeSettings octree_settings(const Settings &settings) {
     OctreeSettings octree;
     octree.threads = threads_of(settings);
     octree.extra = settings.extra;
     return octree;
+}
+
+Failure look_for_loops(Made &made, unsigned threads, Progress &progress) {
+    made.loops = find_loops(made.octree, threads, progress);
+    if (progress.cancelled) return Failure::Cancelled;
+    if (made.loops.torn == 0) return Failure::None;
+    made.place = point_of(made.octree.lattice, made.loops.torn_at);
+    return Failure::Contradicted;
+}
+
+void list_tangled(Made &made) {
+    made.octree.undecided.insert(made.octree.undecided.end(), made.loops.tangled.begin(),
+                                 made.loops.tangled.end());
+    made.octree.settled = made.octree.lattice.level;
+}
+
+// The mesh of cells of one size. What they do not show is listed: where walls are thinner than the
+// finest cells each divided cell tangles those about it, and all together would draw crumbs.
+Failure draw_evenly(Made &made, const Field &field, const Settings &settings,
+                    std::vector<Cell> &divided, Progress &progress) {
+    OctreeSettings octree = octree_settings(settings);
+    octree.searches = false;
+    Progress quiet; // it was here before
+    quiet.report = progress.report;
+    quiet.from = quiet.to = progress.from;
+    made.octree = make_octree(field, made.octree.lattice, octree, quiet);
+    divided.clear();
+    if (quiet.cancelled) return Failure::Cancelled;
+    const Failure failure = look_for_loops(made, octree.threads, progress);
+    if (failure != Failure::None) return failure;
+    list_tangled(made);
+    made.loops.tangled.clear(); // cells of one size need not be divided
+    return Failure::None;
+}
+
+// Cells that are tangled are divided until none is, or their parts are the finest. `again`: where that
+// is in vain the mesh may be begun again.
+Failure untangle(Made &made, const Field &field, const Settings &settings, bool again,
+                 std::size_t most, std::vector<Cell> &divided, Progress &progress) {
+    constexpr int most_rounds = 64;
+    const OctreeSettings octree = octree_settings(settings);
+    const std::size_t before = made.octree.nodes.size();
+    const std::size_t bound = before + std::max(times_untangled * before, nodes_untangled);
+    for (int round = 0; round < most_rounds; ++round) {
+        if (made.octree.nodes.size() > most) return Failure::TooMany;
+        const Failure failure = look_for_loops(made, octree.threads, progress);
+        if (failure != Failure::None) return failure;
+        const std::vector<Cell> &tangled = made.loops.tangled;
+        if (tangled.empty()) return Failure::None;
+        if (again && (made.octree.nodes.size() > bound ||
+                      thinner_in(field, made.octree, tangled, few_tangled, shows_whole,
+                                 octree.threads, progress)))
+            return draw_evenly(made, field, settings, divided, progress);
+        if (round == 0 && thinner_in(field, made.octree, tangled, few_tangled, shows_whole,
+                                     octree.threads, progress)) {
+            // Their parts would be as tangled. Those alone are divided that have to be.
+            list_tangled(made);
+            continue;
+        }
+        divided.insert(divided.end(), tangled.begin(), tangled.end());
+        divide(made.octree, field, tangled, octree, progress);
+    }
+    return Failure::None;
+}
+
+// From an octree without tangled cells to the mesh.
+Failure draw(Made &made, const Field &field, unsigned threads, Progress &progress) {
+    Vertices vertices = place_vertices(made.octree, field, made.loops, threads, progress);
+    if (progress.cancelled) return Failure::Cancelled;
+    made.mesh = make_polygons(made.octree.lattice, made.loops, vertices);
+    made.roots = std::move(vertices.roots);
+    made.root_slack = std::move(vertices.root_slack);
+    if (!made.mesh.triangles.empty()) return Failure::None;
+    if (!made.octree.undecided.empty()) return Failure::Unseen;
+    return made.octree.seams.empty() ? Failure::Empty : Failure::Flat;
+}
+
+Failure finish(Made &made, const Field &field, const Settings &settings, bool again,
+               std::size_t most, std::vector<Cell> &divided, Progress &progress) {
+    const double from = progress.from, to = progress.to;
+    progress.to = from + 0.2 * (to - from);
+    Failure failure = untangle(made, field, settings, again, most, divided, progress);
+    if (failure != Failure::None) return failure;
+    progress.phase(from + 0.8 * (to - from));
+    failure = draw(made, field, threads_of(settings), progress);
+    progress.phase(to);
+    return failure;
 }
 
 } // namespace
@@ -96,7 +162,7 @@ Made make_mesh(const ir::Scene &scene, const Settings &settings) {
     if (made.octree.full) return fail(Failure::TooMany);
     progress.phase(1);
     std::vector<Cell> divided;
-    Failure failure = finish_mesh(made, field, settings, 2 * most_nodes, divided, progress);
+    Failure failure = finish(made, field, settings, true, 2 * most_nodes, divided, progress);
     if (failure == Failure::Empty && settings.bounds) failure = Failure::Outside;
     if (failure != Failure::None) return fail(failure);
     return made;
@@ -104,21 +170,7 @@ Made make_mesh(const ir::Scene &scene, const Settings &settings) {
 
 Failure finish_mesh(Made &made, const Field &field, const Settings &settings, std::size_t most,
                     std::vector<Cell> &divided, Progress &progress) {
-    const double from = progress.from, to = progress.to;
-    progress.to = from + 0.2 * (to - from);
-    const OctreeSettings octree = octree_settings(settings);
-    const Failure failure = untangle(made, field, octree, most, divided, progress);
-    if (failure != Failure::None) return failure;
-    progress.phase(from + 0.8 * (to - from));
-    Vertices vertices = place_vertices(made.octree, field, made.loops, octree.threads, progress);
-    if (progress.cancelled) return Failure::Cancelled;
-    made.mesh = make_polygons(made.octree.lattice, made.loops, vertices);
-    made.roots = std::move(vertices.roots);
-    made.root_slack = std::move(vertices.root_slack);
-    progress.phase(to);
-    if (!made.mesh.triangles.empty()) return Failure::None;
-    if (!made.octree.undecided.empty()) return Failure::Unseen;
-    return made.octree.seams.empty() ? Failure::Empty : Failure::Flat;
+    return finish(made, field, settings, false, most, divided, progress);
 }
 
 } // namespace fathom::mesh

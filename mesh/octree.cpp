@@ -287,7 +287,11 @@ void search_hidden(Octree &octree, const Field &field, const OctreeSettings &set
     // Where planes meet in which parts touch, cells lie in lines; where walls are thin there are many.
     if (cells.size() <= most_close) find_seams(octree, field, cells, true, settings, progress);
     std::size_t boxes = std::max(least_hidden_boxes, hidden_boxes_a_cell * crossed);
-    if (thinner_in(field, octree, cells, settings.threads, progress)) boxes = 0;
+    constexpr std::size_t few = 400; // that cost little
+    constexpr double shows = 1.25;   // cells: a wall along their planes that is thicker is seen
+    if (!settings.searches ||
+        thinner_in(field, octree, cells, few, shows, settings.threads, progress))
+        boxes = 0;
     for (int level = octree.lattice.level; level < octree.settled && !cells.empty(); ++level) {
         if (16 * cells.size() > boxes) break;
         boxes -= 16 * cells.size();

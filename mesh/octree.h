@@ -53,7 +53,8 @@ struct Octree {
 struct OctreeSettings {
     bool trusts_bounds = true; // else ranges alone leave cells out
     unsigned threads = 1;
-    int extra = 3; // Octree::settled lies so many levels below the lattice's
+    int extra = 3;        // Octree::settled lies so many levels below the lattice's
+    bool searches = true; // for what no corner shows; else the cells that may hold it are listed
 };
 
 // All leaves are of the lattice's level or left out; then those open ones that no crossed cell

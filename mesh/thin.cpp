@@ -77,9 +77,7 @@ std::vector<Thin> thin_in(const Field &field, const Lattice &lattice, std::span<
 }
 
 bool thinner_in(const Field &field, const Octree &octree, std::span<const Cell> cells,
-                unsigned threads, Progress &progress) {
-    constexpr std::size_t few = 400;
-    constexpr double showing = 1.25; // cells: what is thicker is seen whole
+                std::size_t few, double showing, unsigned threads, Progress &progress) {
     if (cells.size() < few || octree.settled == octree.lattice.level) return false;
     const double finest = octree.lattice.side(octree.settled);
     std::size_t vain = 0, seen = 0;

@@ -23,10 +23,10 @@ inline constexpr std::size_t most_places = 64;
 std::vector<Thin> thin_in(const Field &field, const Lattice &lattice, std::span<const Cell> cells,
                           unsigned threads, Progress &progress);
 
-// Whether to divide many cells is in vain: what is in most of them is thinner than the finest cells of
-// an octree, so that these would show holes and crumbs, or does but touch. Of few cells it is not
-// asked.
+// Whether to divide many cells is in vain: what is in most of them is thinner than so many of the
+// finest cells of an octree, so that these would show holes and crumbs, or does but touch. Of fewer
+// than `few` cells it is not asked.
 bool thinner_in(const Field &field, const Octree &octree, std::span<const Cell> cells,
-                unsigned threads, Progress &progress);
+                std::size_t few, double showing, unsigned threads, Progress &progress);
 
 } // namespace fathom::mesh

@@ -116,7 +116,9 @@ struct MeshSimplification {
  *  threads. Empty unless `status` is Done. */
 struct Mesh {
     MeshStatus status = MeshStatus::Done;
-    std::string message; /**< why there is none, or what shows undecided cells: in lower case */
+    /** Why there is none; or what shows undecided cells; or, without a certificate, how thin walls and
+     *  gaps are that cells are too large for. In lower case. */
+    std::string message;
     std::vector<Point> vertices, normals;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     /** With MeshOptions::colors: the surface's own colour at each vertex, linear, 0..1, without light

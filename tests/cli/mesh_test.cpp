@@ -55,6 +55,20 @@ TEST_CASE("--json prints the certificate, and says partial where something is un
     CHECK(shell(folder, "fathom mesh ball.sdf --json -o -").exit == 2);
 }
 
+TEST_CASE("walls thinner than cells are said, with what shows them, also without a certificate") {
+    ScratchFolder folder;
+    for (const char *text :
+         {"sphere(2) - sphere(1.98)", "(box(2) - box(1.98)).rotate(0.3, axis: [1, 2, 3])"}) {
+        folder.write("shell.sdf", std::string(text) + "\n");
+        const Result made = shell(folder, "fathom mesh shell.sdf --resolution 24 -o a.stl");
+        CHECK(made.exit == 0);
+        CHECK(contains(made.err, "thick, and cells have sides of "));
+        CHECK(contains(made.err, "shows it, or a resolution of "));
+    }
+    folder.write("thick.sdf", "sphere(2) - sphere(1)\n");
+    CHECK(shell(folder, "fathom mesh thick.sdf --resolution 24 -o a.stl").err.empty());
+}
+
 TEST_CASE("--simplify writes fewer triangles, and the certificate is of these") {
     ScratchFolder folder;
     folder.write("part.sdf", "box(1) - sphere(0.62)\n");

@@ -2,6 +2,7 @@
 // for one.
 #include "driver/compile.h"
 #include "mesh/mend.h"
+#include "mesh/nearest.h"
 #include "mesh/seams.h"
 #include "mesh/slopes.h"
 #include "mesh/thin.h"
@@ -51,6 +52,18 @@ TEST_CASE("parts that are flush leave nothing undecided, however they lie") {
              {"box(2) - box([1, 1, 1]).translate(z: 0.5)", 7, 1, 0},
              {"box([0.7, 0.9, 1.1]) - box([0.7, 0.9, 1.1]).translate(x: 0.3)", 0.297, 1, 0},
              {"box(1) | box(1).translate(x: 1, y: 0.3)", 2, 1, 0},
+             {"(box(2) - box([1, 1, 2])) | box([1, 1, 2])", 8, 1, 0},
+             {"((box(2) - box([1, 1, 2])) | box([1, 1, 2])).translate([0.31, 0.17, 0.05])", 8, 1,
+              0},
+             {"(box(2) - box(1)) | box(1)", 8, 1, 0},
+             {"(box(2) - sphere(0.7)) | sphere(0.7)", 8, 1, 0},
+             {"sphere(0.7) | (box(2) - sphere(0.7))", 8, 1, 0},
+             {"(box(2) - sphere(0.7).translate(y: 0.4)) | (box(2) & sphere(0.7).translate(y: 0.4))",
+              8, 1, 0},
+             {"box([0.8, 1, 0.8]) - box([0.4, 1, 0.4]).translate(z: 0.2)", 0.48, 1, 0},
+             {"((box([0.4, 1, 1]) - box([1, 1, 0.8]).translate(x: -0.4)) | (box([0.4, 1, 1]) & "
+              "box([1, 1, 0.8]).translate(x: -0.4))).rotate(0.744, axis: [3, -1, 1])",
+              0.4, 1, 0},
              {"cylinder(2, 0.5) - cylinder(1, 0.5)", 1.5 * pi, 1, 1},
              {"(cylinder(2, 1) - cylinder(1, 1)) | cylinder(1, 1)", 4 * pi, 1, 0},
              {"(box(2) - box([1, 1, 2])).rotate(0.3, axis: [1, 2, 3])", 6, 1, 1},
@@ -186,4 +199,76 @@ TEST_CASE("how thin a wall is is measured, and what touches is seen") {
     const auto lattice = mesh::make_lattice({{-1, -1, -1}, {2, 1, 1}}, 0.1, 3);
     CHECK(thin_at(evaluator, *lattice, 0.1, {0.47f, 0.1f, 0.1f}).touches);
     CHECK_FALSE(thin_at(evaluator, *lattice, 0.1, {0.1f, 0.1f, 0.1f}).touches);
+}
+
+TEST_CASE(
+    "walls and gaps thinner than all cells are listed, in a mesh that is no larger for them") {
+    const auto size_at = [](const char *text, int resolution) {
+        return mesh::make_mesh(flush_scene(text), fine_cells(resolution)).mesh.triangles.size();
+    };
+    struct Case {
+        const char *text;
+        double thickness, size; // of the solid
+    };
+    std::size_t thin = 0;
+    for (const auto &[text, thickness, size] : std::vector<Case>{
+             {"sphere(2) - sphere(1.98)", 0.02, 4},
+             {"sphere(2) - sphere(1.99)", 0.01, 4},
+             {"sphere(2) - sphere(1.95)", 0.05, 4},
+             {"(sphere(2) - sphere(1.98)) | box(1).translate(x: 3)", 0.02, 5.5},
+             {"(box(2) - sphere(0.7)) | sphere(0.69)", 0.01, 2},
+             {"torus(1, 0.3) - torus(1, 0.29)", 0.01, 2.6},
+             {"(cylinder(1, 2) - cylinder(0.99, 2)).rotate(0.5, axis: [1, 2, 0])", 0.01, 2.5}})
+        for (const int resolution : {8, 16, 24}) {
+            if (thickness > size / resolution / 8) continue; // the finest cells may show it
+            ++thin;
+            INFO(text << " at " << resolution);
+            const mesh::Made made = mesh::make_mesh(flush_scene(text), fine_cells(resolution));
+            if (made.failure == mesh::Failure::Unseen) continue; // which is said
+            REQUIRE(made.failure == mesh::Failure::None);
+            CHECK(made.mesh.triangles.size() < 8 * size_at("sphere(2)", resolution) + 10'000);
+            CHECK(test::survey(made.mesh.vertices, made.mesh.triangles).closed());
+            CHECK(test::crossings(made.mesh.vertices, made.mesh.triangles) == 0);
+        }
+    CHECK(thin > 10);
+    const mesh::Made shell =
+        mesh::make_mesh(flush_scene("sphere(2) - sphere(1.98)"), fine_cells(16));
+    CHECK(shell.octree.undecided.size() > 500);
+    // One that the finest cells show is drawn, and whole.
+    const mesh::Made shown = mesh::make_mesh(flush_scene("box([4, 4, 0.06])"), fine_cells(16));
+    CHECK(shown.octree.undecided.empty());
+    CHECK(mesh::form_of(shown.mesh).components == 1);
+}
+
+TEST_CASE("what is certified beside thin gaps is as near to them as it says") {
+    // Filled, but for a gap, which is surface where it is wider than rounding.
+    std::size_t certified = 0;
+    for (const double gap : {0.03, 0.0001}) {
+        const std::string b = std::to_string(1 - gap), r = std::to_string(0.7 - gap);
+        struct Case {
+            std::string text;
+            bool ball;
+        };
+        for (const auto &[text, ball] :
+             std::vector<Case>{{"(box(2) - box([1, 1, 2])) | box([" + b + ", 1, 2])", false},
+                               {"(box(2) - box(1)) | box(" + b + ")", false},
+                               {"(box(2) - sphere(0.7)) | sphere(" + r + ")", true}}) {
+            INFO(text);
+            const mesh::Mended made = mesh::make_certified_mesh(flush_scene(text), fine_cells(12));
+            REQUIRE(made.made.failure == mesh::Failure::None);
+            if (!made.certificate.certified()) continue;
+            ++certified;
+            const mesh::TriangleTree tree(made.made.mesh);
+            for (int k = 0; k < 196; ++k) { // on the wall of the gap
+                const double u = (k % 14 - 6.5) / 14, v = (k / 14 - 6.5) / 14;
+                std::array<double, 3> at{0.5, u, v};
+                const double length = std::hypot(0.5, u, v);
+                for (double &x : at) x *= ball ? 0.7 / length : 1;
+                const auto near = tree.nearest(at, 10);
+                REQUIRE(near);
+                CHECK(near->distance <= made.certificate.surface_to_mesh * (1 + 1e-5) + 1e-5);
+            }
+        }
+    }
+    CHECK(certified > 0);
 }
