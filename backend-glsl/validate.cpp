@@ -1,5 +1,6 @@
 #include "backend-glsl/validate.h"
 
+#include "backend-glsl/small_tables.h"
 #include "base/text.h"
 
 #include <glslang/Include/glslang_c_interface.h>
@@ -90,7 +91,10 @@ glslang_input_t input_of(const std::string &text, glslang_stage_t stage) {
 
 } // namespace
 
-std::optional<Complaint> validate(const std::string &text, Stage stage) {
+std::optional<Complaint> validate(const std::string &text, Stage stage, Tables tables) {
+    if (stage == Stage::Fragment && tables == Tables::AsNeeded)
+        if (const std::optional<std::string> same = for_small_tables(text))
+            if (!link(input_of(*same, GLSLANG_STAGE_FRAGMENT)).complaint) return std::nullopt;
     return link(input_of(text,
                          stage == Stage::Compute ? GLSLANG_STAGE_COMPUTE : GLSLANG_STAGE_FRAGMENT))
         .complaint;

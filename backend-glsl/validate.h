@@ -16,8 +16,13 @@ struct Complaint {
 
 enum class Stage { Fragment, Compute };
 
+// Which of glslang's tables a text is read by: those of the text's version, or smaller ones where
+// they are enough to say that it is valid (small_tables.h).
+enum class Tables { AsNeeded, All };
+
 // A whole shader with its #version line. Nothing where it is valid.
-std::optional<Complaint> validate(const std::string &text, Stage stage = Stage::Fragment);
+std::optional<Complaint> validate(const std::string &text, Stage stage = Stage::Fragment,
+                                  Tables tables = Tables::AsNeeded);
 
 // The same text as SPIR-V for OpenGL 4.5 (GL_ARB_gl_spirv), or what is wrong with it.
 struct SpirV {
