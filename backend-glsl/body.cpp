@@ -195,7 +195,12 @@ class Writer {
         const ir::Loop &loop = graph_.loop(ir::LoopId{graph_[id].payload});
         for (std::size_t k = 0; k < loop.vars.size(); ++k) {
             const Type type = graph_[loop.vars[k]].type;
-            const std::string start = value(graph_.args(id)[k]);
+            const NodeId begin = graph_.args(id)[k];
+            if (loop.next[k] == loop.vars[k] && graph_.is_constant(begin)) {
+                name_[loop.vars[k]] = at_least(expression(begin), Primary);
+                continue;
+            }
+            const std::string start = value(begin);
             const std::string name = names_.numbered(prefix_of(type));
             line(indent, std::string(glsl_type(type)) + " " + name + " = " + start + ";");
             name_[loop.vars[k]] = name;

@@ -3,6 +3,7 @@
 #include "ir/graph.h"
 
 #include "base/hash.h"
+#include "ir/passes/early_exit.h"
 #include "ir/passes/fold.h"
 #include "ir/passes/simplify.h"
 
@@ -357,7 +358,10 @@ std::size_t Graph::bytes() const {
 }
 
 FunctionId Graph::add_function(Function function) { return functions_.add(std::move(function)); }
-LoopId Graph::add_loop(Loop loop) { return loops_.add(std::move(loop)); }
+LoopId Graph::add_loop(Loop loop) {
+    make_exit_conditions(*this, loop);
+    return loops_.add(std::move(loop));
+}
 void Graph::change_loop(LoopId id, Loop loop) { loops_[id] = std::move(loop); }
 TableId Graph::add_table(Table table) {
     std::uint64_t h = hash_combine(static_cast<std::uint64_t>(table.rows),

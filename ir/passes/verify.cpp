@@ -359,6 +359,9 @@ class Verifier {
         if (loop.condition && type(loop.condition) != Type::Bool)
             fail(id, "its condition is no bool");
         if (loop.max_count < 0) fail(id, "it has no limit");
+        if (loop.count > id || (loop.condition && loop.condition > id) ||
+            std::ranges::any_of(loop.next, [&](NodeId next) { return next > id; }))
+            fail(id, "it precedes what it computes");
         if (const std::optional<double> count = graph_.as_number(loop.count);
             count && *count > loop.max_count)
             fail(id, "it counts past its limit");
