@@ -32,7 +32,8 @@ struct Options {
     Target target{};         // the table's first
     bool field_only = false; // just `float sdf(vec3 p)`, the material function and the bound
     bool buffers = false; // the host binds large tables as the texture buffer `fathom_tables`; else
-                          // a formula stands for a table that has one, and all other data is text
+                          // a formula stands for a table that has one, unless that is short and
+                          // the formula dear, and all other data is text
     bool computed = false; // formulas first, also where there is a buffer
     int table_text = 16;   // rows up to which data is text all the same
     bool noise_cache =

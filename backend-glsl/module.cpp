@@ -137,13 +137,24 @@ class Gatherer {
 
     void read(std::uint32_t slot, std::vector<NodeId> &todo) {
         const ir::Table &table = graph_.table(ir::table_of(slot));
-        if (module_.options.computed || !module_.options.buffers)
+        if ((module_.options.computed || !module_.options.buffers) && !is_better_read(table))
             for (const auto &[column, formula] : table.computed)
                 if (column == ir::column_of(slot)) {
                     module_.computed[slot] = formula;
                     return function(formula.index, todo);
                 }
         tables_.insert(ir::table_of(slot).index);
+    }
+
+    // A table of few rows of which a formula takes a sine or more: each turn of a loop that computes
+    // it takes longer than one that reads it.
+    bool is_better_read(const ir::Table &table) const {
+        constexpr int few = 256;     // texels
+        constexpr double dear = 0.4; // cost.h
+        return table.rows * ((table.stride + 3) / 4) <= few &&
+               std::ranges::any_of(table.computed, [&](const auto &column) {
+                   return ir::cost_of(graph_, graph_.function(column.second).result) >= dear;
+               });
     }
 
     void table(std::uint32_t index) {

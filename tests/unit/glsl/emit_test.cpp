@@ -310,6 +310,27 @@ TEST_CASE("many plain materials are a table") {
     CHECK(text.size() < 24000);
 }
 
+TEST_CASE("few rows whose formula takes a sine are read, many or cheap ones computed") {
+    const auto text_of = [](int rows, bool sine) {
+        return sdf_of(of_field([&](Graph &g, NodeId p) {
+            const NodeId row = g.fresh_var(Type::Int);
+            NodeId formula = g.make(Op::ToFloat, Type::Float, {row});
+            if (sine) formula = g.make(Op::Sin, {formula});
+            Table table{rows, 1, {}};
+            for (int i = 0; i < rows; ++i)
+                table.data.push_back(static_cast<float>(sine ? std::sin(i) : i));
+            table.computed.emplace_back(0, g.add_function({"of_row", {}, {row}, formula}));
+            const TableId id = g.add_table(table);
+            const NodeId at = g.make(Op::ToInt, Type::Int, {g.component(p, 0)});
+            return g.make(Op::TableRead, Type::Float, {at}, table_slot(id, 0));
+        }));
+    };
+    CHECK(count(text_of(64, true), "table_0[") == 1);
+    CHECK(count(text_of(64, true), "of_row(") == 0);
+    CHECK(count(text_of(1000, true), "of_row(") == 1);
+    CHECK(count(text_of(64, false), "of_row(") == 1);
+}
+
 TEST_CASE("infinities and the least int are written so that GLSL reads them") {
     const Scene scene = of_field([](Graph &g, NodeId p) {
         const NodeId i = g.make(Op::Min, {g.make(Op::ToInt, Type::Int, {g.component(p, 0)}),
