@@ -135,6 +135,13 @@ Diagnostic *Diagnostics::keep(Diagnostic diagnostic) {
     return &items_.back();
 }
 
+Diagnostic *Diagnostics::find(Code code, Span primary) {
+    const auto it = std::find_if(items_.begin(), items_.end(), [&](const Diagnostic &d) {
+        return d.code == code && d.primary.span == primary;
+    });
+    return it == items_.end() ? nullptr : &*it;
+}
+
 void Diagnostics::withdraw(Code code, Span primary) {
     const auto it = std::find_if(items_.begin(), items_.end(), [&](const Diagnostic &d) {
         return d.code == code && d.primary.span == primary;

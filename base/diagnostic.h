@@ -76,6 +76,8 @@ class Diagnostics {
     // Takes one back which a later phase knows better: what reads the text cannot tell shapes from
     // conditions.
     void withdraw(Code code, Span primary);
+    // The one of that code and place, to be refined; null where there is none.
+    Diagnostic *find(Code code, Span primary);
     bool has_errors() const { return errors_ > 0; }
     std::size_t errors() const { return errors_; }
     std::size_t warnings() const;

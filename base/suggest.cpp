@@ -41,8 +41,9 @@ std::string nearest_name(std::string_view word, const std::vector<std::string> &
     for (const std::string &name : names) {
         const std::size_t longer = std::max(name.size(), word.size());
         if (longer - std::min(name.size(), word.size()) >= best || name == word) continue;
-        // A single letter is near to every other one; only its other case is meant.
-        if (longer == 1 && folded(name[0]) != folded(word[0])) continue;
+        // A single letter is near to every other one, and to words of two; only its other case is
+        // meant.
+        if (word.size() == 1 && (longer > 1 || folded(name[0]) != folded(word[0]))) continue;
         const std::size_t distance = edit_distance(word, name);
         if (distance < best) best = distance, nearest = &name;
     }

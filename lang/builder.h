@@ -22,7 +22,6 @@ namespace fathom::lang {
 bool is_type_word(std::string_view word); // of any language
 bool is_foreign_value(std::string_view name);
 bool is_foreign_module(std::string_view name);
-bool is_foreign_transform(std::string_view name); // what OpenSCAD writes before a shape
 
 // A text as it can stand in a message: of one line and not long, else `…`; and in backticks.
 std::string brief(std::string_view text);
@@ -245,6 +244,7 @@ class Builder {
     void add_stmt(StmtKind kind, Span span, std::uint32_t height);
     std::string doc_above(Index at) const;
     bool is_target(ExprId id) const;
+    bool names_function(ExprId id);
     Index statement_end(Index first) const;
     void drop(const Mark &mark);
     void replace_bad_statement(Index first);
@@ -256,18 +256,35 @@ class Builder {
     bool foreign_group(Index at, bool list);
     bool foreign_binding(Index at);
     bool foreign_name(Index at);
+    std::vector<Edit> names_of_let(Index let);
     bool foreign_in(Index at);
     bool foreign_function_body(Index at);
     bool foreign_instead(Index at, std::string message, const std::string &replacement);
     bool foreign_loop(Index at);
     bool foreign_head(Index first);
+    Edit without_statement(Index first) const;
+    void foreign_param(Index first, Index name);
+    bool foreign_stream(Index first, Index name);
+    void foreign_unbound(Index first, Index name, std::string_view type);
+    void foreign_name_parts(Index left, Index right);
+    bool is_used_after(Index name) const;
+    void foreign_curried(Index first, Index name, Index past);
+    void foreign_function(Index first, Index name, bool has_type);
     bool is_assigned_after(Index name) const;
     bool foreign_body(Index at);
+    bool goes_on_with_else(Index end) const;
+    bool colon_range(Index at);
     void foreign_then(Index at);
     bool foreign_lambda(Index at);
     bool separated_unit(Index at);
     std::string parameters_text(Index open) const;
     bool foreign_junk(Index first, Index at);
+    bool junk_by_sign(Index first, Index at);
+    bool remark(Index first, Index at);
+    bool where_clause(Index first, Index at);
+    void destructuring(Index first, Index from, Index past, Index assign);
+    bool shape_behind_call(Index first, Index at);
+    Index body_below(Index at) const;
     bool foreign_import(Index at);
     bool foreign_slice(Index at);
     std::string transform_text(Index name) const;
@@ -277,6 +294,18 @@ class Builder {
     bool lisp_binding(Index open);
     bool lisp_call(Index at);
     bool joined_by_space(Index at, bool list);
+
+    // Operators of theirs, and what is missing beside one (foreign_operators.cpp).
+    bool touch(Index first, Index second) const; // with nothing between
+    bool foreign_word_operator(Index at);
+    bool foreign_comparison(Index at);
+    bool foreign_scope(Index colon);
+    bool foreign_percent(Index at);
+    bool missing_operand(Index at);
+    bool runs_on(Index name, std::uint32_t end);
+    bool wanted_at_start(Index at) const;
+    bool foreign_product(Index at);
+    bool juxtaposed_arguments(Index at);
 
     // Words and blocks of theirs (foreign_words.cpp).
     void declare_poison(Index name);
@@ -289,6 +318,7 @@ class Builder {
     void foreign_pipe(Index at);
     bool foreign_concat(Index at);
     bool foreign_record(Index brace);
+    bool curv_slider(Index first);
     bool juxtaposed_calls(Index first, Index at);
     void settle_foreign_names();
 
@@ -333,6 +363,8 @@ class Builder {
     std::uint32_t last_too_tall_ = ~0u; // where the chain began that was reported
     std::vector<Span> loose_breaks_;    // of `break`s, those that no loop that was read holds
     std::vector<Index> lost_;           // names that it would have declared, beside its first
+    Index let_until_ = 0;               // the `in` of a Curv `let` whose names were told
+    std::uint32_t bound_at_ = ~0u;      // where the last new name without a `let` stands
     Index failed_ = 0;                  // where the statement that is being abandoned broke
 
     // Names that other languages have, to be reported unless the file declares them.

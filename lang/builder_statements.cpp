@@ -84,7 +84,8 @@ std::string Builder::doc_above(Index at) const {
 }
 
 void Builder::let(Index first, Index) {
-    const Item value = pop_item();
+    Item value = pop_item();
+    if (runs_on(first + 1, value.end)) value.id = add(Poison{}, span(value), 1);
     std::optional<TypeExpr> type = pop_maybe_type();
     add_stmt(Let{pop_name(), std::move(type), value.id, doc_above(first)},
              {id_, token(first).begin, value.end}, height(value.id));
@@ -99,6 +100,11 @@ void Builder::var(Index first, Index) {
 
 void Builder::function(Index first, Index last) {
     shallower();
+    if (expression_body_ && runs_on(first + 1, token(last).end)) {
+        const Span body = ast_.blocks[blocks_.back()].span;
+        const Item nothing{add(Poison{}, body, 1), body.begin, body.end};
+        blocks_.back() = value_block(nothing);
+    }
     std::optional<TypeExpr> result = pop_maybe_type();
     const std::uint32_t body_height = height(blocks_.back());
     const FunctionId function = pop_function(pop_name(), std::move(result), span(first, last));
@@ -125,6 +131,17 @@ void Builder::param(Index first, Index last) {
             param.low = ends->first;
             param.high = ends->last;
             tallest = std::max(tallest, height(range->id));
+        } else if (const List *list = std::get_if<List>(&expr.kind);
+                   list && list->items.size() == 2) { // `[0, 2]`
+            param.low = list->items[0];
+            param.high = list->items[1];
+            tallest = std::max(tallest, height(range->id));
+            const auto written = [&](ExprId id) {
+                return std::string(text(ast_.exprs[id].span.begin, ast_.exprs[id].span.end));
+            };
+            const std::string ends = written(*param.low) + ".." + written(*param.high);
+            foreign(span(*range), "a parameter's range is written `low..high`")
+                .help("write " + in_code(ends), {{span(*range), ends}});
         } else if (!std::holds_alternative<Poison>(expr.kind)) {
             diagnostics_
                 .add(Code::SyntaxError, span(*range), "a parameter's range is written `low..high`")
@@ -201,6 +218,17 @@ bool Builder::is_target(ExprId id) const {
     }
 }
 
+// A call of a name that is not declared, whose arguments are names: `f(x)`.
+bool Builder::names_function(ExprId id) {
+    const lang::Call *head = std::get_if<lang::Call>(&ast_.exprs[id].kind);
+    if (!head || head->trailing || head->arguments.empty()) return false;
+    const lang::Name *called = std::get_if<lang::Name>(&ast_.exprs[head->callee].kind);
+    return called && !is_declared(called->text) &&
+           std::ranges::all_of(head->arguments, [&](const Argument &a) {
+               return !a.name && std::holds_alternative<lang::Name>(ast_.exprs[a.value].kind);
+           });
+}
+
 // Whether a name was declared above, anywhere: then an assignment means to change it.
 bool Builder::is_declared(const std::string &name) {
     for (; known_ < declared_.size(); ++known_) known_names_.insert(declared_[known_]);
@@ -215,12 +243,25 @@ void Builder::assignment() {
     const std::uint32_t tall = std::max(height(target.id), height(value.id));
     const Name *name = std::get_if<Name>(&ast_.exprs[target.id].kind);
     if (!in_function_ && name && kind(at) == Tok::Assign && !is_declared(name->text)) {
-        foreign(span(target), "a new name is bound with `let`")
-            .help("write `let " + name->text + " = …`",
-                  {{{id_, target.begin, target.begin}, "let "}});
+        if (at >= let_until_) // else told at the `let` that is for all of them
+            foreign(span(target), "a new name is bound with `let`")
+                .help("write `let " + name->text + " = …`",
+                      {{{id_, target.begin, target.begin}, "let "}});
+        bound_at_ = target.begin;
         Identifier bound{name->text, span(target), name->word};
         declared_.push_back(text(target.begin, target.end));
         add_stmt(Let{std::move(bound), {}, value.id, {}}, whole, tall);
+        return;
+    }
+    if (kind(at) == Tok::Assign && names_function(target.id)) { // `f(x) = …`
+        foreign(span(target), "a function is declared with `fn`")
+            .help("write " + in_code("fn " + std::string(text(target.begin, target.end)) + " = …"),
+                  {{{id_, target.begin, target.begin}, "fn "}});
+        const lang::Call &head = std::get<lang::Call>(ast_.exprs[target.id].kind);
+        const lang::Name &called = std::get<lang::Name>(ast_.exprs[head.callee].kind);
+        Identifier bound{called.text, ast_.exprs[head.callee].span, called.word};
+        declared_.push_back(text(bound.span.begin, bound.span.end));
+        add_stmt(Let{std::move(bound), {}, add(Poison{}, whole, 1), {}}, whole, 1);
         return;
     }
     if (!is_target(target.id)) {
@@ -313,7 +354,8 @@ Builder::Index Builder::statement_end(Index first) const {
 // What stands for the statement in the tree. Its name stays declared, so that its uses are no new
 // errors.
 void Builder::replace_bad_statement(Index first) {
-    for (const Index name : std::exchange(lost_, {})) declare_poison(name);
+    const std::vector<Index> lost = std::exchange(lost_, {});
+    for (const Index name : lost) declare_poison(name);
     const Index end = statement_end(first);
     const Span whole = span(first, end > first ? end - 1 : first);
     Index name = first;
@@ -324,8 +366,13 @@ void Builder::replace_bad_statement(Index first) {
     const bool declares =
         kind(first) != Tok::Name || behind == Tok::Assign ||
         (name > first && behind == Tok::Open && text(name - 1) != "default"); // JavaScript's export
+    const auto is_lost = [&](Index i) { return text(i) == text(name); };
+    if (std::ranges::any_of(lost, is_lost)) {
+        add_stmt(Bad{}, whole, 1);
+        return;
+    }
     if (kind(first) == Tok::Name && name == first && declares && kind(name) == Tok::Name &&
-        !is_declared(std::string(text(name)))) {
+        (bound_at_ == token(first).begin || !is_declared(std::string(text(name))))) {
         declare_poison(name);
         return;
     }

@@ -141,7 +141,10 @@ void Builder::generic_failure(Wanted wanted, Index at) {
     case Wanted::CloseList:
     case Wanted::CloseBrace: {
         d.label(span(enclosing(at)), "opened here");
-        if (begins_operand(found) && wanted != Wanted::CloseBrace) {
+        if (found == Tok::Name && kind(at - 1) == Tok::Number && kind(at + 1) != Tok::Colon &&
+            kind(at + 1) != Tok::Assign) {
+            d.help("a comma or a `*` is missing before it");
+        } else if (begins_operand(found) && wanted != Wanted::CloseBrace) {
             const std::uint32_t end = token(at - 1).end;
             d.help("a comma may be missing", {{{id_, end, end}, ","}});
         }
@@ -158,6 +161,9 @@ void Builder::generic_failure(Wanted wanted, Index at) {
             d.help("statements stand on lines of their own, without commas",
                    {{span(at), last ? "" : ";"}});
         }
+        if (is_one_of(found, {Tok::Let, Tok::Var, Tok::Fn, Tok::Param}) &&
+            kind(at + 1) == Tok::Name)
+            lost_.push_back(at + 1);
         if ((begins_operand(found) || begins_statement(found)) && kind(at - 1) != Tok::Name) {
             const std::uint32_t end = token(at - 1).end;
             d.help("begin a new line, or part statements by `;`", {{{id_, end, end}, ";"}});

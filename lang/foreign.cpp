@@ -16,11 +16,6 @@ constexpr std::array<std::string_view, 24> type_words = {
     "float", "int",   "bool",  "string", "vec2",   "vec3",     "vec4",   "mat2",
     "mat3",  "mat4",  "color", "shape",  "shape2", "material", "light",  "double",
     "ivec2", "ivec3", "uint",  "bvec2",  "bvec3",  "field",    "region", "number"};
-constexpr std::array<std::string_view, 13> qualifiers = {
-    "const",   "uniform", "static",  "auto",  "local", "final", "highp",
-    "mediump", "lowp",    "varying", "inout", "out",   "mut"};
-constexpr std::array<std::string_view, 6> function_words = {"def", "function", "func",
-                                                            "fun", "module",   "void"};
 constexpr std::array<std::string_view, 5> math_modules = {"math", "Math", "np", "numpy", "glm"};
 constexpr std::array<std::string_view, 10> value_words = {
     "True", "False", "TRUE", "FALSE", "None", "null", "NULL", "nil", "undefined", "undef"};
@@ -97,6 +92,29 @@ static std::string range_up_to(const std::string &from, const std::string &to,
 
 // -- loops ---------------------------------------------------------------------------------------
 
+// The end of the statement on the deeper line below a header that ends at `at`; else `at`.
+Builder::Index Builder::body_below(Index at) const {
+    constexpr int most_headers = 8; // one in another
+    const Index first = at + 1;
+    const auto column = [&](Index i) {
+        const std::size_t line = std::string_view(source_.text).rfind('\n', token(i).begin);
+        return token(i).begin - (line == std::string_view::npos ? 0 : line + 1);
+    };
+    Index header = at;
+    while (header > 0 && !token(header).first_on_line) --header;
+    if (kind(at) != Tok::End || text(at) == ";" || first >= tokens_.tokens.size() ||
+        !token(first).first_on_line || column(first) <= column(header))
+        return at;
+    Index end = first;
+    for (int headers = 0; headers < most_headers; ++headers) {
+        const bool nests = is_one_of(kind(end), {Tok::For, Tok::If, Tok::While});
+        while (!ends_statement(end)) end = match(end) > end ? match(end) + 1 : end + 1;
+        if (!nests || kind(end - 1) != Tok::Close || kind(end) != Tok::End) break;
+        ++end;
+    }
+    return end;
+}
+
 // `for (…)` with what stands in the parentheses: `i in list`, `i = [0:8]`, `int i = 0; i < 8; i++`.
 bool Builder::foreign_loop(Index at) {
     if (at == 0 || kind(at - 1) != Tok::For ||
@@ -116,9 +134,16 @@ bool Builder::foreign_loop(Index at) {
     const auto propose = [&](const std::string &head) {
         std::vector<Edit> edits{{span(at, close), head}};
         Index end = close + 1; // of a body without braces
+        const bool below = body_below(close + 1) > close + 1;
+        if (below) {
+            end = body_below(close + 1);
+            edits[0].replacement += " {";
+            edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, " }"});
+            failed_ = end - 1;
+        }
         while (!ends_statement(end) && kind(end) != Tok::ListClose && kind(end) != Tok::Close)
             end = match(end) > end ? match(end) + 1 : end + 1;
-        if (kind(close + 1) != Tok::Body && end > close + 1) {
+        if (!below && kind(close + 1) != Tok::Body && end > close + 1) {
             edits.push_back({{id_, token(close + 1).begin, token(close + 1).begin}, "{ "});
             edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, " }"});
         }
@@ -165,118 +190,75 @@ bool Builder::foreign_loop(Index at) {
         (below ? "range(" + from + ", " + to + ", " + by + ")" : range_up_to(from, to, by)));
 }
 
-// -- declarations --------------------------------------------------------------------------------
-
-// The parameters between two parentheses, as they would be written here.
-std::string Builder::parameters_text(Index open) const {
-    const Index close = match(open);
-    std::string out;
-    for (Index i = open + 1; i < close;) {
-        Index end = i;
-        while (end < close && kind(end) != Tok::Comma)
-            end = match(end) > end ? match(end) + 1 : end + 1;
-        while (i + 1 < end && (is_one_of(text(i), qualifiers) || kind(i) == Tok::In)) ++i;
-        if (!out.empty()) out += ", ";
-        const bool type_first = kind(i) == Tok::Name && kind(i + 1) == Tok::Name && i + 1 < end;
-        const std::string rest(end > i ? text(token(i).begin, token(end - 1).end) : "");
-        if (!type_first)
-            out += rest;
-        else
-            out += std::string(text(i + 1)) + ": " + std::string(text(i)) +
-                   std::string(text(token(i + 1).end, token(end - 1).end));
-        i = end + 1;
-    }
-    return out;
-}
-
-// Is the name that is declared here given another value in the rest of its block?
-bool Builder::is_assigned_after(Index name) const {
-    constexpr std::array changes{Tok::Assign,     Tok::PlusAssign,  Tok::MinusAssign,
-                                 Tok::StarAssign, Tok::SlashAssign, Tok::OtherAssign};
-    const Index open = enclosing(name), partner = match(open),
-                end = partner > open ? partner : Index(tokens_.tokens.size());
-    for (Index i = name + 1; i < end; ++i) {
-        if (kind(i) != Tok::Name || text(i) != text(name)) continue;
-        const Tok before = kind(i - 1); // a named argument, another declaration
-        if (before == Tok::Open || before == Tok::Comma || before == Tok::Name) continue;
-        Index at = i + 1;
-        while (kind(at) == Tok::Dot && kind(at + 1) == Tok::Name) at += 2;
-        if (std::ranges::find(changes, kind(at)) != changes.end()) return true;
-    }
-    return false;
-}
-
-// `vec2 x = …`, `const x = …`, `float f(vec3 p) {`, `def f(x):`, `module f() {`.
-bool Builder::foreign_head(Index first) {
-    Index name = first;
-    while (kind(name + 1) == Tok::Name) ++name;
-    if (name == first || kind(name) != Tok::Name) return false;
-    const std::string word(text(first)), declared(text(name));
-    const std::string type(text(name - 1));
-    const bool has_type = !is_one_of(type, qualifiers) && !is_one_of(type, function_words);
-
-    if (kind(name + 1) == Tok::Open) {
-        const bool is_function = is_one_of(word, function_words) || is_one_of(type, type_words);
-        if (!is_function) return false;
-        const Index close = match(name + 1);
-        if (declared.starts_with("main") && word == "void") {
-            foreign(span(first, name), "a scene has no " + in_code(declared))
-                .note("the shapes that stand at top level are the scene");
-            return true;
-        }
-        const bool colon = kind(close + 1) == Tok::Colon;
-        std::string head = "fn " + declared + "(" + parameters_text(name + 1) + ")";
-        if (has_type) head += " -> " + type;
-        if (colon) {
-            std::vector<Edit> edits{{span(first, close), head}};
-            if (!indented_body(close + 1, edits)) edits.clear();
-            foreign(span(first, name),
-                    "a function is declared with `fn`, and its body stands in braces")
-                .help("write `" + head + " { … }`", std::move(edits));
-            return true;
-        }
-        foreign(span(first, name), "a function is declared with `fn`")
-            .help("write " + in_code(head), {{span(first, close), head}});
-        return true;
-    }
-    const bool curv = name == first + 1 && !is_one_of(word, qualifiers) &&
-                      !is_one_of(word, type_words) && !is_one_of(word, function_words);
-    if (kind(name + 1) == Tok::Assign && curv) {
-        const std::string head = "fn " + word + "(" + declared + ")";
-        lost_.push_back(first);
-        foreign(span(first, name), "a function is declared with `fn`")
-            .help("write " + in_code(head), {{span(first, name), head}});
-        return true;
-    }
-    if (kind(name + 1) == Tok::Assign) {
-        const bool changes = is_assigned_after(name);
-        const std::string let =
-            (changes ? "var " : "let ") + declared + (has_type && !changes ? ": " + type : "");
-        Diagnostic &d = foreign(span(first, name),
-                                changes    ? "a name that is assigned to later is bound with `var`"
-                                : has_type ? "a type stands behind its name, after `let`"
-                                           : "a name is bound with `let`");
-        d.help("write " + in_code(let + " = …"), {{span(first, name), let}});
-        return true;
-    }
-    if (is_one_of(type, type_words) && ends_statement(name + 1)) {
-        lost_.push_back(name);
-        foreign(span(first, name), "a name is bound together with its value")
-            .help(word == "uniform" ? "a number from outside is `param " + declared +
-                                          " = 1 in 0..2`, the seconds are `time`"
-                                    : "write `let " + declared + ": " + type + " = …`");
-        return true;
-    }
-    return false;
-}
-
 // -- where a statement should have ended ---------------------------------------------------------
+
+// A line of words, as `-- a remark`, `; a remark`: no statement.
+bool Builder::remark(Index first, Index at) {
+    Index words = first;
+    while (kind(words) == Tok::Minus) ++words;
+    const Index begin = words;
+    while (is_one_of(kind(words), {Tok::Name, Tok::In, Tok::And, Tok::Or, Tok::Not, Tok::For}))
+        ++words;
+    if (at >= 3 && kind(at - 1) == Tok::Name && kind(at - 2) == Tok::Minus &&
+        kind(at - 3) == Tok::Minus && touch(at - 3, at - 2) && kind(at) == Tok::Name &&
+        at - 3 > first) { // `sphere(1) -- a remark`
+        foreign(span(at - 3, at - 2), "a comment begins with `//`")
+            .help("write `//`", {{span(at - 3, at - 2), "//"}});
+        return true;
+    }
+    const bool dashes = begin == first + 2 && touch(first, first + 1);
+    const Index count = words - begin;
+    const bool lisp = first > 0 && kind(first - 1) == Tok::End && text(first - 1) == ";" &&
+                      !token(first).first_on_line;
+    if (!ends_statement(words) || at > words || at < begin || count < (dashes ? 2u : 3u) ||
+        (begin > first && !dashes) || kind(begin) != Tok::Name)
+        return false;
+    const Span sign = dashes ? span(first, first + 1)
+                      : lisp ? span(first - 1)
+                             : Span{id_, token(first).begin, token(first).begin};
+    foreign(span(lisp ? first - 1 : first, words - 1), "a comment begins with `//`")
+        .help("write `//`", {{sign, dashes || lisp ? "//" : "// "}});
+    return true;
+}
+
+// `sphere(r) where r = 2`, at the word.
+bool Builder::where_clause(Index first, Index at) {
+    if (kind(at) != Tok::Name || text(at) != "where" || kind(at + 1) != Tok::Name ||
+        kind(at + 2) != Tok::Assign)
+        return false;
+    failed_ = at + 2;
+    const Index end = statement_end(first);
+    const std::string let =
+        "let " + std::string(text(token(at + 1).begin, token(end - 1).end)) + "; ";
+    lost_.push_back(at + 1);
+    foreign(span(at), "a name is bound before it is used")
+        .help("write " + in_code(let + "…"), {{{id_, token(first).begin, token(first).begin}, let},
+                                              {{id_, token(at - 1).end, token(end - 1).end}, ""}});
+    return true;
+}
+
+// OpenSCAD's `ring() sphere(1)`, at the shape.
+bool Builder::shape_behind_call(Index first, Index at) {
+    if (kind(first) != Tok::Name || kind(first + 1) != Tok::Open || at != first + 3 ||
+        kind(first + 2) != Tok::Close || kind(at) != Tok::Name || kind(at + 1) != Tok::Open ||
+        token(at).first_on_line)
+        return false;
+    const Index end = statement_end(first);
+    const std::string shape(text(token(at).begin, token(end - 1).end));
+    foreign(span(first, first + 2), "what a function is given stands in its parentheses")
+        .help("write " + in_code(std::string(text(first)) + "(" + shape + ")"),
+              {{{id_, token(first + 2).begin, token(at).begin}, ""},
+               {{id_, token(end - 1).end, token(end - 1).end}, ")"}});
+    return true;
+}
 
 bool Builder::foreign_junk(Index first, Index at) {
     const Tok found = kind(at);
     if (kind(first) == Tok::Name && kind(first + 1) == Tok::Name && foreign_head(first))
         return true;
     if (found == Tok::Name && juxtaposed_calls(first, at)) return true;
+    if (remark(first, at) || where_clause(first, at) || shape_behind_call(first, at)) return true;
+    if (foreign_word_operator(at) || foreign_scope(at)) return true;
     const bool after_loop =
         (kind(first) == Tok::For || kind(first) == Tok::While) && kind(at - 1) == Tok::BraceClose;
     // what begins another statement wants a line of its own, and no operator does
@@ -294,6 +276,7 @@ bool Builder::foreign_junk(Index first, Index at) {
         return true;
     }
     if (foreign_lambda(at) || separated_unit(at)) return true;
+    if (text(first + 1) != text(at) && foreign_product(at)) return true; // else its own name
     if (found == Tok::Name && kind(at - 1) == Tok::Name && text(at - 1) == "new") {
         foreign(span(at - 1), "nothing is made with `new`")
             .help("leave it away", {{{id_, token(at - 1).begin, token(at).begin}, ""}});
@@ -310,9 +293,9 @@ bool Builder::foreign_junk(Index first, Index at) {
             .help("write `// …`", std::move(edits));
         return true;
     }
-    if (found == Tok::In && kind(first) == Tok::Let) {
+    if (found == Tok::In && is_one_of(kind(first), {Tok::Let, Tok::Fn, Tok::Param})) {
         foreign(span(at), "a name is known to the end of its block, without `in`")
-            .help("end the `let`, with a line's end or `;`",
+            .help("end the statement, with a line's end or `;`",
                   {{{id_, token(at - 1).end, token(at).end}, ";"}});
         return true;
     }
@@ -320,17 +303,27 @@ bool Builder::foreign_junk(Index first, Index at) {
         return joined_by_space(at, false);
     const std::string name(text(first));
     const bool all = name == "assert" || name == "print" || name == "echo"; // `assert 1 < 2`
-    const bool literal = found == Tok::Number || found == Tok::String || found == Tok::Color ||
-                         (all && found == Tok::Name);
-    if (literal && kind(first) == Tok::Name && at == first + 1) {
+    const bool value =
+        is_one_of(found, {Tok::Number, Tok::String, Tok::Color, Tok::Name, Tok::True, Tok::False});
+    if (all && value && kind(first) == Tok::Name && at == first + 1) {
         Diagnostic &d = foreign(span(first, at), "a call's arguments stand in parentheses");
-        const Index last = all ? statement_end(first) - 1 : at;
+        const Index last = statement_end(first) - 1;
         d.help("write " +
                    in_code(name + "(" + std::string(text(token(at).begin, token(last).end)) + ")"),
                {{{id_, token(first).end, token(at).begin}, "("},
                 {{id_, token(last).end, token(last).end}, ")"}});
         return true;
     }
+    return juxtaposed_arguments(at) || junk_by_sign(first, at);
+}
+
+// The same by the sign, or the keyword, that should not stand there.
+bool Builder::junk_by_sign(Index first, Index at) {
+    const Tok found = kind(at);
+    const std::string name(text(first));
+    if (found == Tok::Arrow && at > 0 && kind(at - 1) == Tok::Name &&
+        is_declared(std::string(text(at - 1))))
+        return foreign_instead(at, "a part of a value stands behind a `.`", ".");
     if (found == Tok::Arrow) {
         foreign(span(at), "a function without a name is written with `=>`")
             .help("write `=>`", {{span(at), "=>"}});
@@ -344,6 +337,12 @@ bool Builder::foreign_junk(Index first, Index at) {
                   {{{id_, token(first).begin, token(first).begin}, "fn "}, {span(at), "="}});
         return true;
     }
+    if (found == Tok::Number && kind(first) == Tok::Param && kind(first + 2) == Tok::Assign) {
+        const std::uint32_t end = token(at - 1).end;
+        foreign(span(at), "a param's range stands behind `in`")
+            .help("write `in`", {{{id_, end, end}, " in"}});
+        return true;
+    }
     if (found == Tok::Colon) {
         if (kind(first) != Tok::Name || at != first + 1) return false;
         if (first > 0 && kind(first - 1) == Tok::Trailing) { // `torus{major: 2}`
@@ -352,9 +351,12 @@ bool Builder::foreign_junk(Index first, Index at) {
                 .help("write `( … )`", {{span(open), "("}, {span(match(open)), ")"}});
             return true;
         }
+        const bool walrus = kind(at + 1) == Tok::Assign;
+        std::vector<Edit> edits{{{id_, token(first).begin, token(first).begin}, "let "}};
+        if (walrus) edits.push_back({span(at), ""});
+        if (walrus) lost_.push_back(first);
         foreign(span(first), "a new name is bound with `let`")
-            .help("write `let " + name + "`",
-                  {{{id_, token(first).begin, token(first).begin}, "let "}});
+            .help("write `let " + name + (walrus ? " = …`" : "`"), std::move(edits));
         return true;
     }
     if (found == Tok::OtherAssign) {
@@ -366,8 +368,19 @@ bool Builder::foreign_junk(Index first, Index at) {
                   {{span(at), "= " + target + " " + op}});
         return true;
     }
+    if (found == Tok::Comma && kind(first) == Tok::Param && kind(first + 2) == Tok::Assign) {
+        foreign(span(at), "a param's range stands behind `in`")
+            .help("write `in`", {{span(at), " in"}});
+        return true;
+    }
     if (found == Tok::Comma) {
         if (kind(first) == Tok::Name && at == first + 1 && kind(at + 1) == Tok::Name) {
+            Index assign = at; // `a, b = 1, 2`
+            while (is_one_of(kind(assign), {Tok::Name, Tok::Comma})) ++assign;
+            if (kind(assign) == Tok::Assign) {
+                destructuring(first, first, assign, assign);
+                return true;
+            }
             foreign(span(first, at + 1), "each name is bound by a `let` of its own")
                 .help("write `let " + name + " = …`");
             for (Index i = first; kind(i) == Tok::Name; i += 2) lost_.push_back(i);

@@ -1,6 +1,7 @@
 // Answers to calls as other languages write them: transforms before what they move, arguments
 // without parentheses, lambdas, units apart from their numbers, slices, imports.
 #include "lang/builder.h"
+#include "lang/lexer.h"
 
 #include <algorithm>
 #include <array>
@@ -102,11 +103,21 @@ bool Builder::foreign_lambda(Index at) {
     return true;
 }
 
-// `45 deg`.
+// `45 deg`, `5 mm`.
 bool Builder::separated_unit(Index at) {
     if (at == 0 || kind(at) != Tok::Name || kind(at - 1) != Tok::Number) return false;
-    if (text(at) != "deg" && text(at) != "rad" && text(at) != "turn") return false;
-    const std::string angle = std::string(text(at - 1)) + std::string(text(at));
+    const std::string_view unit = text(at);
+    if (is_length_unit(unit) && !is_declared(std::string(unit))) {
+        diagnostics_
+            .add(Code::BadNumber, span(at - 1, at),
+                 "a length has no unit: all of a scene are in the same")
+            .help("leave " + in_code(unit) + " away",
+                  {{{id_, token(at - 1).end, token(at).end}, ""}});
+        return true;
+    }
+    const bool degrees = is_degree_word(unit);
+    if (!degrees && unit != "deg" && unit != "rad" && unit != "turn") return false;
+    const std::string angle = std::string(text(at - 1)) + (degrees ? "deg" : std::string(unit));
     diagnostics_.add(Code::BadNumber, span(at - 1, at), "a unit touches its number")
         .help("write " + in_code(angle), {{span(at - 1, at), angle}});
     return true;
@@ -280,7 +291,9 @@ bool Builder::lisp_binding(Index open) {
 // `(sphere 100)`, also within `(union (sphere 100) …)`, at the argument.
 bool Builder::lisp_call(Index at) {
     const auto stands_apart = [&](Index i) { // no call's bracket, or one behind a space
-        return i == 0 || kind(i - 1) != Tok::Name || token(i - 1).end < token(i).begin;
+        const Tok before = i == 0 ? Tok::End : kind(i - 1);
+        return !is_one_of(before, {Tok::Name, Tok::Close, Tok::ListClose}) ||
+               token(i - 1).end < token(i).begin;
     };
     const auto is_form = [&](Index i) {
         return kind(match(i)) == Tok::Close && stands_apart(i) && match(i) > i;

@@ -30,12 +30,6 @@ bool Builder::foreign_operand(Wanted wanted, Index at) {
             .help("write `[for … { … }]` for a list, `union { for … { … } }` for a shape");
         return true;
     }
-    if (found == Tok::Bar && kind(at + 1) == Tok::Name && kind(at + 2) == Tok::Bar) {
-        const std::string head = std::string(text(at + 1)) + " =>";
-        foreign(span(at, at + 2), "a function without a name is written `p => …`")
-            .help("write " + in_code(head + " …"), {{span(at, at + 2), head}});
-        return true;
-    }
     if (found == Tok::Greater && kind(before) == Tok::Bar && token(before).end == token(at).begin) {
         foreign_pipe(at);
         return true;
@@ -47,6 +41,15 @@ bool Builder::foreign_operand(Wanted wanted, Index at) {
     }
     if (found == Tok::Question && kind(before) == Tok::Question) {
         foreign(span(before, at), "there is no `??`: every name has a value");
+        return true;
+    }
+    if (wanted == Wanted::Statement && found == Tok::In && is_type_word(text(at + 1)) &&
+        kind(at + 2) == Tok::Name) {
+        lost_.push_back(at + 2);
+        return foreign_stream(at, at + 2);
+    }
+    if (wanted == Wanted::Statement && found == Tok::In && at > 0 && at == let_until_) {
+        failed_ = at; // told at the `let`
         return true;
     }
     if (wanted == Wanted::Statement && found == Tok::In) {
@@ -65,14 +68,14 @@ bool Builder::foreign_operand(Wanted wanted, Index at) {
         if (kind(at + 1) == Tok::LambdaOpen) d.help("leave `fn` away", {{span(at), ""}});
         return true;
     }
-    return false;
+    return missing_operand(at);
 }
 
 // In brackets, where an element ended and neither a comma nor the bracket's end follows.
 bool Builder::foreign_list(Index at) {
     const Tok found = kind(at);
     const Index before = at > 0 ? at - 1 : 0;
-    if (found == Tok::Colon && foreign_slice(at)) return true;
+    if (found == Tok::Colon && (foreign_scope(at) || foreign_slice(at))) return true;
     if (found == Tok::Colon) {
         foreign(span(at), "a range is written with `..`, or `..=` with its end")
             .help("write `..=`", {{span(at), "..="}});
@@ -96,6 +99,7 @@ bool Builder::foreign_group(Index at, bool list) {
     const Tok found = kind(at);
     const Index before = at > 0 ? at - 1 : 0;
     if (foreign_lambda(at) || separated_unit(at)) return true;
+    if (foreign_word_operator(at) || foreign_comparison(at) || foreign_scope(at)) return true;
     const Index open = enclosing(at);
     const bool head = open >= 2 && kind(open - 2) == Tok::Fn;
     if ((head || kind(open) == Tok::LambdaOpen) && found == Tok::Name &&
@@ -119,62 +123,52 @@ bool Builder::foreign_group(Index at, bool list) {
             d.help("write `[for … { … }]` for a list, `union { for … { … } }` for a shape");
         return true;
     }
-    if (found == Tok::DotDot && text(at) == ".." && kind(at + 1) == Tok::Dot) {
-        foreign(span(at, at + 1), "a list is not spread out")
-            .help("lists are joined by `concat(a, b)`");
+    if (found == Tok::DotDot && text(at) == "...") {
+        foreign(span(at), "a list is not spread out").help("lists are joined by `concat(a, b)`");
         return true;
     }
     if (foreign_concat(at) || joined_by_space(at, list)) return true;
     const bool grouping = open > 0 && kind(open) == Tok::Open && kind(open - 1) != Tok::Name &&
                           kind(open - 1) != Tok::Close && kind(open - 1) != Tok::ListClose;
+    if (grouping && foreign_product(at)) return true;
+    if (!list && found == Tok::Assign && (grouping || kind(open) == Tok::FreshOpen))
+        return foreign_instead(at, "a comparison is written `==`", "==");
+    if (!list && found == Tok::End && text(at) == ";" && !ends_statement(at + 1)) {
+        foreign(span(at), "arguments are parted by commas").help("write `,`", {{span(at), ","}});
+        return true;
+    }
     if (grouping && found == Tok::Comma) { // a tuple
         const Index close = match(open);
         foreign(span(open), "a vector or a list stands in brackets")
             .help("write `[ … ]`", {{span(open), "["}, {span(close), "]"}});
         return true;
     }
+    if (found == Tok::Arrow && kind(before) == Tok::Name && is_declared(std::string(text(before))))
+        return foreign_instead(at, "a part of a value stands behind a `.`", ".");
     if (found == Tok::Arrow)
         return foreign_instead(at, "a function without a name is written with `=>`", "=>");
     return false;
 }
 
-// Behind the name of a `let`, `var` or `param`.
-bool Builder::foreign_binding(Index at) {
-    const Tok found = kind(at);
-    const Index before = at > 0 ? at - 1 : 0;
-    if (found == Tok::EqualEqual) return foreign_instead(at, "a name is bound with one `=`", "=");
-    if (found == Tok::Comma && kind(at + 1) == Tok::Name) {
-        for (Index i = at + 1; kind(i) == Tok::Name; i += 2) lost_.push_back(i);
-        foreign(span(before, at + 1), "each name is bound by a `let` of its own")
-            .help("write `let " + std::string(text(before)) + " = …; let " +
-                  std::string(text(at + 1)) + " = …`");
-        return true;
+// Curv's `let` of several names, with the `in` behind them: what it takes to bind each.
+std::vector<Edit> Builder::names_of_let(Index let) {
+    constexpr Index farthest = 2000; // words
+    std::vector<Edit> edits{{{id_, token(let).begin, token(let).end}, ""}};
+    for (Index i = let + 1;
+         i < tokens_.tokens.size() && i<let + farthest; i = match(i)> i ? match(i) + 1 : i + 1) {
+        const bool begins = kind(i - 1) == Tok::End || i == let + 1;
+        if (!begins) continue;
+        if (kind(i) == Tok::In) {
+            let_until_ = i;
+            edits.push_back({span(i), ""});
+            break;
+        }
+        if (kind(i) == Tok::BraceClose || kind(i) == Tok::Let) break;
+        if (kind(i) == Tok::Name && kind(i + 1) == Tok::Assign)
+            edits.push_back({{id_, token(i).begin, token(i).begin}, "let "});
     }
-    if (found == Tok::In && kind(at - 2) == Tok::Param) {
-        const std::string name(text(before));
-        diagnostics_.add(Code::ParamRange, span(before), "a param has a value beside its range")
-            .help("write " + in_code("param " + name + " = 1 in 0..2"));
-        return true;
-    }
-    if (found == Tok::Open && kind(at - 2) == Tok::Let) {
-        foreign(span(at - 2), "a function is declared with `fn`")
-            .help("write `fn`", {{span(at - 2), "fn"}});
-        return true;
-    }
-    if (found == Tok::Name && text(before) == "mut") {
-        lost_.push_back(at);
-        foreign(span(at - 2, before), "a name that changes is bound with `var`")
-            .help("write `var`", {{span(at - 2, before), "var"}});
-        return true;
-    }
-    if (found == Tok::Name && kind(before) == Tok::Name && kind(at + 1) == Tok::Assign) {
-        const std::string typed = std::string(text(at)) + ": " + std::string(text(before));
-        lost_.push_back(at);
-        foreign(span(before, at), "a type stands behind its name")
-            .help("write " + in_code(typed), {{span(before, at), typed}});
-        return true;
-    }
-    return false;
+    if (let_until_ <= let) edits.resize(1);
+    return edits;
 }
 
 // Where a declaration's name should stand.
@@ -189,9 +183,15 @@ bool Builder::foreign_name(Index at) {
     if (kind(before) == Tok::Let && at < tokens_.tokens.size() &&
         (found == Tok::End || found == Tok::Open)) {
         const Index close = match(at);
+        if (found == Tok::Open && kind(close + 1) == Tok::Assign && kind(at + 1) == Tok::Name &&
+            kind(at + 2) != Tok::Assign) { // `let (a, b) = …`
+            failed_ = close + 1;
+            destructuring(before, at + 1, close, close + 1);
+            return true;
+        }
         std::vector<Edit> edits;
         if (found == Tok::End) // Curv's: the names follow on lines of their own
-            edits.push_back({span(before), ""});
+            edits = names_of_let(before);
         else if (kind(at + 1) == Tok::Name && kind(at + 2) == Tok::Assign)
             edits = {{span(at), ""}, {span(close), ";"}}, lost_.push_back(at + 1);
         foreign(span(before), "each name is bound by a `let` of its own")
@@ -208,6 +208,12 @@ bool Builder::foreign_in(Index at) {
         return foreign_instead(at, "a loop runs over what stands behind `in`", "in");
     if (found == Tok::Name && text(at) == "of")
         return foreign_instead(at, "a loop runs over what stands behind `in`", "in");
+    if (is_one_of(found, {Tok::Number, Tok::Open, Tok::ListOpen, Tok::Name})) {
+        const std::uint32_t end = token(at - 1).end;
+        diagnostics_.add(Code::SyntaxError, span(at), "`in` is missing before this")
+            .help("write `in`", {{{id_, end, end}, " in"}});
+        return true;
+    }
     if (found == Tok::Comma) {
         foreign(span(at), "a loop has one variable")
             .help("loop over the places: `for i in 0..len(list) { let x = list[i] … }`");
@@ -224,8 +230,15 @@ bool Builder::foreign_function_body(Index at) {
                           (kind(at + 2) == Tok::Body || kind(at + 2) == Tok::Trailing ||
                            kind(at + 2) == Tok::Assign);
         if (type) return foreign_instead(at, "a function's result stands behind `->`", " ->");
-        foreign(span(at), "a function's body stands in braces, or behind a `=`")
-            .help("write `{ … }`");
+        const Index first = at + 1;
+        Index end = first;
+        while (!ends_statement(end)) end = match(end) > end ? match(end) + 1 : end + 1;
+        Diagnostic &d = foreign(span(at), "a function's body stands in braces, or behind a `=`");
+        std::vector<Edit> edits;
+        if (end > first && !token(first).first_on_line && kind(first) != Tok::Return)
+            d.help("write `=`", {{span(at), " ="}});
+        else
+            d.help("write `{ … }`", indented_body(at, edits) ? edits : std::vector<Edit>{});
         return true;
     }
     if (found == Tok::FatArrow)
@@ -241,7 +254,21 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
     case Wanted::CloseParen: return foreign_group(at, false);
     case Wanted::AssignSign: return foreign_binding(at);
     case Wanted::Type:
-        if (kind(at) != Tok::Assign || at == 0 || kind(at - 1) != Tok::Colon) return false;
+        if (at > 0 && kind(at - 1) == Tok::Arrow &&
+            is_one_of(kind(at), {Tok::Body, Tok::Trailing, Tok::StrayBrace, Tok::Assign})) {
+            const std::uint32_t end = token(at - 2).end;
+            diagnostics_.add(Code::SyntaxError, span(at - 1), "a result's type stands behind `->`")
+                .help("leave it away, or write the type", {{{id_, end, token(at - 1).end}, ""}});
+            return true;
+        }
+        if (at == 0 || kind(at - 1) != Tok::Colon) return false;
+        if (is_one_of(kind(at),
+                      {Tok::Number, Tok::String, Tok::Color, Tok::True, Tok::False, Tok::Minus})) {
+            foreign(span(at - 1), "a value stands behind `=`, a type behind `:`")
+                .help("write `=`", {{span(at - 1), " ="}});
+            return true;
+        }
+        if (kind(at) != Tok::Assign) return false;
         foreign(span(at - 1, at), "a name is bound with `=`")
             .help("leave the `:` away", {{span(at - 1), ""}});
         return true;
@@ -251,13 +278,30 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
     case Wanted::Block: return foreign_body(at);
     case Wanted::ImportPath: return foreign_import(at);
     case Wanted::CloseBrace:
-    case Wanted::ParameterName:
     case Wanted::OpenParen:
+        if (kind(at) == Tok::Name) { // `fn f x = …`
+            Index past = at;
+            while (kind(past) == Tok::Name) ++past;
+            if (kind(past) != Tok::Assign && kind(past) != Tok::Body) return false;
+            foreign_curried(at - 2, at - 1, past);
+            return true;
+        }
+        if (kind(at) != Tok::Body && kind(at) != Tok::Assign) return false;
+        diagnostics_
+            .add(Code::SyntaxError, span(at - 1), "a function's parameters stand in parentheses")
+            .help("without parameters, write " + in_code(std::string(text(at - 1)) + "()"),
+                  {{{id_, token(at - 1).end, token(at - 1).end}, "()"}});
+        return true;
+    case Wanted::MemberName:
+        if (at == 0 || !ends_statement(at)) return false;
+        diagnostics_.add(Code::SyntaxError, span(at - 1), "a name is missing behind this `.`")
+            .help("leave it away, or name what is done: `.translate(x: 1)`", {{span(at - 1), ""}});
+        return true;
+    case Wanted::ParameterName:
     case Wanted::TypeEnd:
     case Wanted::TypeNumber:
     case Wanted::TypeArrow:
     case Wanted::Arrow:
-    case Wanted::MemberName:
     case Wanted::TernaryColon:
     case Wanted::StatementEnd: return false;
     }

@@ -40,6 +40,8 @@ constexpr ForeignWord statement_words[] = {
     {"raise", "a scene throws nothing", "a condition is tested by `assert(condition, \"why\")`"},
     {"throw", "a scene throws nothing", "a condition is tested by `assert(condition, \"why\")`"},
     {"try", "a scene catches nothing", "a condition is tested by `assert(condition, \"why\")`"},
+    {"except", "a scene catches nothing", "a condition is tested by `assert(condition, \"why\")`"},
+    {"finally", "a scene catches nothing", "leave the word away"},
     {"parametric", "a parameter is declared with `param`", "write `param r = 2 in 1..3`"},
     {"elif", "a choice goes on with `else if`", "write `} else if condition { … }`"},
     {"switch", "a choice is written with `if`", "write `if a { … } else if b { … } else { … }`"},
@@ -63,15 +65,14 @@ bool Builder::foreign_statement(Index first) {
         if (kind(close + 1) != Tok::Assign) return false;
         failed_ = close + 1;
         const bool library = kind(close + 2) == Tok::Name && text(close + 2) == "require";
-        for (Index i = first + 2; i < close && !library; ++i)
-            if (kind(i) == Tok::Name) declare_poison(i);
         withdraw_quotes(first);
-        Diagnostic &d = foreign(span(first, close), "each name is bound by a `let` of its own");
-        if (library)
-            d.help("the library needs no import: leave the line away",
-                   {{{id_, token(first).begin, token(statement_end(first) - 1).end}, ""}});
-        else
-            d.help("write `let a = list[0]`, and so on");
+        if (!library) {
+            destructuring(first, first + 2, close, close + 1);
+            return true;
+        }
+        foreign(span(first, close), "each name is bound by a `let` of its own")
+            .help("the library needs no import: leave the line away",
+                  {{{id_, token(first).begin, token(statement_end(first) - 1).end}, ""}});
         return true;
     }
     // `import { a } from '…'`, `import("part.stl")`
@@ -108,6 +109,15 @@ bool Builder::foreign_statement(Index first) {
         return false;
     }
     if (kind(first) != Tok::Name) return false;
+    if ((text(first) == "module" && kind(first + 1) == Tok::Dot && text(first + 2) == "exports") ||
+        (text(first) == "exports" && !may_be_declared("exports") &&
+         is_one_of(kind(first + 1), {Tok::Dot, Tok::Assign}))) {
+        failed_ = first + 1;
+        foreign(span(first, first + 1), "the shapes of a file are the scene")
+            .help("leave it away",
+                  {{{id_, token(first).begin, token(statement_end(first) - 1).end}, ""}});
+        return true;
+    }
     if (text(first) == "export" && kind(first + 1) == Tok::Name && text(first + 1) == "default") {
         failed_ = first + 1;
         foreign(span(first, first + 1), "the shapes of a file are the scene")
@@ -120,10 +130,13 @@ bool Builder::foreign_statement(Index first) {
     const Tok next = kind(first + 1);
     const bool called = (text(first) == "switch" || text(first) == "match") &&
                         kind(match(first + 1) + 1) == Tok::Trailing;
-    const bool block = text(first) == "try" || text(first) == "do";
+    const bool caught =
+        is_one_of(text(first), std::array<std::string_view, 3>{"try", "except", "finally"});
+    const bool block = caught || text(first) == "do";
     const bool applies = next == Tok::Name || next == Tok::Fn || next == Tok::Less ||
                          next == Tok::True || next == Tok::False ||
-                         (next == Tok::Trailing && block) || (next == Tok::Open && called);
+                         (next == Tok::Trailing && block) || (next == Tok::Colon && caught) ||
+                         (next == Tok::Open && called);
     if (!applies || ((called || block) && may_be_declared(text(first)))) return false;
     failed_ = first + 1;
     std::vector<Edit> unused;
@@ -137,6 +150,7 @@ bool Builder::foreign_statement(Index first) {
         const Index after = match(first + 1) + 1;
         if (kind(after) == Tok::Name && !token(after).first_on_line) failed_ = after;
     }
+    if (text(first) == "parametric" && curv_slider(first)) return true;
     Diagnostic &d = foreign(span(first), std::string(row->message));
     const Index end = statement_end(first);
     if (row->drop)
@@ -256,15 +270,42 @@ void Builder::foreign_then(Index at) {
     d.help("write " + told + "`", std::move(edits));
 }
 
+// Whether an `else` follows the statement that ends there.
+bool Builder::goes_on_with_else(Index end) const {
+    while (kind(end) == Tok::End && end < tokens_.tokens.size()) ++end;
+    return kind(end) == Tok::Else;
+}
+
+// `for i in 0:5 { … }`, at the colon.
+bool Builder::colon_range(Index at) {
+    Index first = at;
+    while (first > 0 && !is_one_of(kind(first), {Tok::For, Tok::If, Tok::While, Tok::End})) --first;
+    Index end = at + 1;
+    while (!ends_statement(end) && kind(end) != Tok::Body) ++end;
+    if (kind(first) != Tok::For || kind(end) != Tok::Body) return false;
+    return foreign_instead(at, "a range is written with `..`, or `..=` with its end", "..=");
+}
+
 // A header without its `{`: `if a = b {`, `if x:`, `if (c) return 1`.
 bool Builder::foreign_body(Index at) {
     const Tok found = kind(at);
     body_missing_ = true;
     if (at < tokens_.tokens.size() && found == Tok::End) {
+        const Index end = body_below(at);
+        const bool whole = end > at && !goes_on_with_else(end);
+        std::vector<Edit> edits;
+        if (whole) {
+            const std::uint32_t header = token(at - 1).end, last = token(end - 1).end;
+            edits = {{{id_, header, header}, " {"}, {{id_, last, last}, " }"}};
+            failed_ = end - 1;
+        }
         foreign(span(at), "a body stands in braces, which begin on the line of its header")
-            .help("write `{ … }`");
+            .help("write `{ … }`", std::move(edits));
         return true;
     }
+    if (foreign_word_operator(at) || foreign_comparison(at)) return true;
+    if (found == Tok::Colon && foreign_scope(at)) return true;
+    if (found == Tok::Colon && colon_range(at)) return true;
     if (found == Tok::Assign) {
         foreign(span(at), "a comparison is written `==`").help("write `==`", {{span(at), "=="}});
         return true;

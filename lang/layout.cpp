@@ -125,6 +125,7 @@ class Layout {
     void report_unclosed(const Level &open, const Token *instead);
     bool else_if_of_other_languages(const Token &t);
     bool ends_with_callee() const;
+    bool transform_waits(const Token &t) const;
     Tok brace_kind();
 
     std::uint32_t indent_of(const Token &t) const {
@@ -171,11 +172,19 @@ bool Layout::ends_with_callee() const {
 
 void Layout::report_unclosed(const Level &open, const Token *instead) {
     const Token &token = out_.tokens[open.index];
+    for (std::size_t i = open.index + 1; i < out_.tokens.size(); ++i) {
+        const Token &inside = out_.tokens[i];
+        if (inside.first_on_line) break;
+        // a string that is not closed on the line, which was told, holds what would have closed it
+        if (inside.kind == Tok::Bad && text_of(source_, inside)[0] == '"') return;
+    }
     const std::string sign(text_of(source_, token));
     Diagnostic &d =
         diagnostics_.add(Code::UnclosedBracket, span(token), "this `" + sign + "` is never closed");
     const std::string closer(1, static_cast<char>(closer_of(open.bracket)));
     if (instead) d.label(span(*instead), "`" + closer + "` is wanted before this");
+    if (instead && open.bracket != Tok::Body && instead->first_on_line)
+        d.help("write `" + closer + "`", {{after_previous(), closer}});
     const std::string_view rest = std::string_view(source_.text).substr(token.end);
     const std::string_view line = rest.substr(0, rest.find('\n'));
     if (const std::size_t comment = line.find("//");
@@ -237,7 +246,22 @@ void Layout::line_begins(const Token &t) {
                   {{after_previous(), " " + op}, {{id_, t.begin, rest}, ""}});
         return;
     }
+    if (transform_waits(t)) return; // OpenSCAD's: told by the grammar
     end_statement();
+}
+
+// Whether the line above is a transform of OpenSCAD without its shape, as `translate([0, 0, 1])`,
+// and this line stands further in.
+bool Layout::transform_waits(const Token &t) const {
+    const std::size_t close = out_.tokens.size() - 1;
+    if (t.kind != Tok::Name || out_.tokens[close].kind != Tok::Close) return false;
+    const std::size_t open = out_.match[close];
+    if (open == 0 || open + 1 >= close) return false;
+    const Token &name = out_.tokens[open - 1];
+    const Tok first = out_.tokens[open + 1].kind;
+    const bool theirs = is_one_of(first, {Tok::ListOpen, Tok::Number, Tok::String, Tok::Minus});
+    return name.kind == Tok::Name && theirs && is_foreign_transform(text_of(source_, name)) &&
+           indent_of(t) > indent_of(name);
 }
 
 Tok Layout::brace_kind() {
@@ -326,7 +350,8 @@ void Layout::place(std::size_t i) {
     }
     if (t.kind == Tok::Name) {
         const bool lambda = i + 1 < words_.size() && words_[i + 1].kind == Tok::FatArrow;
-        if (lambda) return put(t, Tok::LambdaName);
+        const bool condition = level().waits == Header::If || level().waits == Header::While;
+        if (lambda && !condition) return put(t, Tok::LambdaName);
         const std::string_view text = text_of(source_, t);
         const Tok last = previous();
         const bool after_operand = !continues_after(last) && last != Tok::While && last != Tok::End;
@@ -335,13 +360,22 @@ void Layout::place(std::size_t i) {
         if (text == "as" && n >= 2 && out_.tokens[n - 2].kind == Tok::Import)
             return put(t, Tok::As);
     }
+    // `if n => 3 {`: a condition is no function
+    if (t.kind == Tok::FatArrow && previous() == Tok::Name &&
+        (level().waits == Header::If || level().waits == Header::While)) {
+        diagnostics_.add(Code::ForeignSyntax, span(t), "this comparison is written `>=`")
+            .help("write `>=`", {{span(t), ">="}});
+        return put(t, Tok::GreaterEqual);
+    }
     put(t, t.kind);
 }
 
 } // namespace
 
 Tokens lay_out(const Source &source, SourceId id, const Words &words, Diagnostics &diagnostics) {
-    return Layout(source, id, words, diagnostics).run();
+    Words ours;
+    ours.tokens = read_foreign_lambdas(source, id, words.tokens, diagnostics);
+    return Layout(source, id, ours.tokens.empty() ? words : ours, diagnostics).run();
 }
 
 } // namespace fathom::lang

@@ -38,69 +38,7 @@ constexpr std::string_view sign_table[] = {"..=", "->", "=>", "..", "==", "!=", 
                                            ",",   ":",  ".",  ";",  "=",  "|",  "&",  "<",  ">",
                                            "+",   "-",  "*",  "/",  "%",  "^"};
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_hex(char c) { return is_digit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
-
-unsigned hex_value(char c) {
-    return static_cast<unsigned>(is_digit(c) ? c - '0' : (c | 0x20) - 'a' + 10);
-}
-
 std::string quoted_code(std::string_view text) { return "`" + std::string(text) + "`"; }
-
-// A word that begins like a number but is none: why, and what was meant where that is plain.
-struct BadNumber {
-    std::string message, help, replacement;
-};
-
-std::size_t number_length(std::string_view word) {
-    std::size_t i = 0;
-    const auto digits = [&] {
-        const std::size_t start = i;
-        while (i < word.size() && is_digit(word[i])) ++i;
-        return i > start;
-    };
-    digits();
-    if (i + 1 < word.size() && word[i] == '.' && is_digit(word[i + 1])) ++i, digits();
-    if (i < word.size() && (word[i] == 'e' || word[i] == 'E')) {
-        const std::size_t mantissa = i++;
-        if (i < word.size() && (word[i] == '+' || word[i] == '-')) ++i;
-        if (!digits()) i = mantissa;
-    }
-    return i;
-}
-
-BadNumber explain_bad_number(std::string_view word) {
-    const std::string whole(word);
-    if (word[0] == '.')
-        return {"a number does not begin with a point", "write the zero before the point",
-                "0" + whole};
-    const std::size_t length = number_length(word);
-    const std::string number(word.substr(0, length));
-    const std::string_view rest = word.substr(length);
-    if (rest == ".")
-        return {"a number does not end with a point",
-                "leave the point away, or write a digit after it",
-                number.find('.') == std::string::npos ? number + ".0" : number};
-    if (rest == "f" || rest == "F" || rest == ".f" || rest == "u" || rest == "U")
-        return {"a number has no suffix " + quoted_code(rest), "leave it away", number};
-    if ((rest[0] == 'x' || rest[0] == 'X') && number == "0" && rest.size() > 1 &&
-        std::all_of(rest.begin() + 1, rest.end(), is_hex) && rest.size() < 9) {
-        std::uint64_t value = 0;
-        for (const char c : rest.substr(1)) value = value << 4 | hex_value(c);
-        return {"numbers are written in decimal", "write the value", fmt::to_string(value)};
-    }
-    if (rest[0] == '_' &&
-        std::all_of(rest.begin(), rest.end(), [](char c) { return is_digit(c) || c == '_'; })) {
-        std::string digits = whole;
-        std::erase(digits, '_');
-        return {"the digits of a number stand together", "leave the underscores away", digits};
-    }
-    if (rest == "e" || rest == "E") return {"an exponent needs digits after the `e`", "", ""};
-    if (rest == "°" || rest == "degrees" || rest == "degree")
-        return {"the unit of degrees is `deg`", "write `deg`", number + "deg"};
-    return {"a name cannot follow a number directly", "to multiply, write `*`",
-            number + " * " + std::string(rest)};
-}
 
 } // namespace
 
@@ -196,6 +134,16 @@ void Lexer::word(std::uint32_t begin, std::uint32_t end) {
     add(kind, begin, end);
 }
 
+// Whether what stands behind a number's digits is a name that the text has above.
+bool Lexer::is_named(std::string_view number) const {
+    constexpr std::size_t most_reports = 100; // all words are looked at
+    if (diagnostics_.items().size() > most_reports) return true;
+    const std::string_view name = number.substr(number_length(number));
+    return std::any_of(words_.tokens.begin(), words_.tokens.end(), [&](const Token &t) {
+        return t.kind == Tok::Name && text_of(source_, t) == name;
+    });
+}
+
 void Lexer::number(std::uint32_t begin, std::uint32_t end) {
     const std::string_view word = slice(begin, end);
     const std::optional<NumberWord> number = read_number(word);
@@ -209,13 +157,23 @@ void Lexer::number(std::uint32_t begin, std::uint32_t end) {
             .help("write 0, a number from 1.2e-38 to 3.4e38, or `inf` where there is no limit");
         return;
     }
+    const Tok before =
+        words_.tokens.size() > 1 ? words_.tokens[words_.tokens.size() - 2].kind : Tok::End;
+    if (is_one_of(before, {Tok::Let, Tok::Var, Tok::Fn, Tok::Param})) {
+        const std::size_t digits = number_length(word);
+        const std::string name =
+            std::string(word.substr(digits)) + std::string(word.substr(0, digits));
+        report(Code::BadNumber, begin, end, "a name begins with a letter")
+            .help("write " + quoted_code(name), {{span(begin, end), name}});
+        return;
+    }
     const char left = begin > 0 ? source_.text[begin - 1] : ' ';
     const bool component =
         word[0] == '.' && (is_digit(left) || std::isalpha(static_cast<unsigned char>(left)) ||
                            left == '_' || left == ')' || left == ']');
     BadNumber bad = component ? BadNumber{"a component is a name or an index", "write an index",
                                           "[" + std::string(word.substr(1)) + "]"}
-                              : explain_bad_number(word);
+                              : explain_bad_number(word, is_named(word));
     Diagnostic &d = report(Code::BadNumber, begin, end, std::move(bad.message));
     if (!bad.help.empty())
         d.help(std::move(bad.help), {{span(begin, end), std::move(bad.replacement)}});
@@ -237,82 +195,60 @@ void Lexer::string(std::uint32_t begin, std::uint32_t end) {
     }
 }
 
+// What no rule of the words reads: a `#`, a string between typographic quotes. Its end, or 0.
+std::uint32_t Lexer::by_hand(std::uint32_t begin) {
+    const char first = source_.text[begin];
+    if (first == '\xE2') return smart_string(begin);
+    if (first != '#') return 0;
+    std::size_t end = begin + 1;
+    while (end < source_.text.size() && is_word_char(source_.text[end])) ++end;
+    return hash(begin, static_cast<std::uint32_t>(end));
+}
+
+// A string between typographic quotes on its line: its end, or 0.
+std::uint32_t Lexer::smart_string(std::uint32_t begin) {
+    constexpr std::string_view opening[] = {"\xE2\x80\x9C", "\xE2\x80\x9E", "\xE2\x80\x98",
+                                            "\xE2\x80\x9D"};
+    constexpr std::string_view closing[] = {"\xE2\x80\x9D", "\xE2\x80\x9C", "\xE2\x80\x99"};
+    const std::string_view all = source_.text;
+    const auto begins = [&](std::string_view sign) { return all.substr(begin).starts_with(sign); };
+    if (std::ranges::none_of(opening, begins)) return 0;
+    const std::size_t inside = begin + opening[0].size(), line = all.find('\n', begin);
+    std::size_t end = all.npos;
+    for (const std::string_view sign : closing) end = std::min(end, all.find(sign, inside));
+    end = std::min(end, all.find('"', inside));
+    if (end == all.npos || end > line) return 0;
+    const auto past = static_cast<std::uint32_t>(end + (all[end] == '"' ? 1 : 3));
+    const std::string text(all.substr(inside, end - inside));
+    add(Tok::Bad, begin, past);
+    foreign(begin, past, "a string stands in straight double quotes", "\"" + text + "\"");
+    return past;
+}
+
 void Lexer::unclosed_string(std::uint32_t begin, std::uint32_t end) {
     add(Tok::Bad, begin, end);
-    report(Code::UnclosedBracket, begin, begin + 1, "this string is not closed on its line")
-        .help("close it with `\"`");
+    if (begin > 0 && is_digit(source_.text[begin - 1])) { // inches
+        report(Code::BadNumber, begin, begin + 1,
+               "a length has no unit: all of a scene are in the same")
+            .help("leave the `\"` away", {{span(begin, begin + 1), ""}});
+        return;
+    }
+    const std::string_view rest = slice(begin + 1, end);
+    const std::size_t last = rest.find_last_not_of(")];,{ \t\r");
+    Diagnostic &d =
+        report(Code::UnclosedBracket, begin, begin + 1, "this string is not closed on its line");
+    if (last == rest.npos || rest.find_first_of("()") <= last) {
+        d.help("close it with `\"`");
+        return;
+    }
+    const auto at = static_cast<std::uint32_t>(begin + 2 + last);
+    d.help("close it with `\"`", {{span(at, at), "\""}});
 }
 
 void Lexer::quoted(std::uint32_t begin, std::uint32_t end) {
     add(Tok::String, begin, end);
     foreign(begin, end, "a string stands in double quotes",
             "\"" + std::string(slice(begin + 1, end - 1)) + "\"");
-}
-
-// The end of the name behind `#define`, where a value follows on its line; else 0.
-std::uint32_t Lexer::defined_name(std::uint32_t from) const {
-    const std::string_view all = source_.text;
-    const auto is_word = [](char c) {
-        return c == '_' || std::isalnum(static_cast<unsigned char>(c));
-    };
-    const std::size_t begin = std::min(all.find_first_not_of(" \t", from), all.size());
-    std::size_t end = begin;
-    while (end < all.size() && is_word(all[end])) ++end;
-    const std::size_t value = std::min(all.find_first_not_of(" \t", end), all.size());
-    const bool good = end > begin && !is_digit(all[begin]) && value > end && value < all.size() &&
-                      all[value] != '\n' && all[value] != '\r' && all[value] != '/';
-    return good ? static_cast<std::uint32_t>(end) : 0;
-}
-
-// `#define N 3` is read as `let N = 3`.
-std::uint32_t Lexer::define(std::uint32_t begin, std::uint32_t end, std::uint32_t name_end) {
-    const auto name = static_cast<std::uint32_t>(source_.text.find_first_not_of(" \t", end));
-    report(Code::ForeignSyntax, begin, end, "there is no preprocessor; a name is bound with `let`")
-        .help("write `let " + std::string(slice(name, name_end)) + " = …`",
-              {{span(begin, end), "let"}, {span(name_end, name_end), " ="}});
-    add(Tok::Let, begin, end);
-    add(Tok::Name, name, name_end);
-    add(Tok::Assign, name_end, name_end);
-    return name_end;
-}
-
-std::uint32_t Lexer::hash(std::uint32_t begin, std::uint32_t end) {
-    const std::string_view digits = slice(begin + 1, end);
-    const bool all_hex = std::all_of(digits.begin(), digits.end(), is_hex);
-    if (all_hex && (digits.size() == 3 || digits.size() == 6 || digits.size() == 8)) {
-        add(Tok::Color, begin, end);
-        return end;
-    }
-    // `# remark` of Python, and `#version`, `#include`: the rest of the line is theirs.
-    if (digits.empty() || (fresh_line_ && !all_hex)) {
-        const std::size_t line_end = std::min(source_.text.find('\n', begin), source_.text.size());
-        if (end < source_.text.size() && source_.text[end] == '(') { // OpenSCAD's modifier
-            report(Code::ForeignSyntax, begin, begin + 1, "there are no modifiers of shapes")
-                .help("leave it away", {{span(begin, begin + 1), ""}});
-            return begin + 1;
-        }
-        if (const auto name_end = defined_name(end); digits == "define" && name_end > 0)
-            return define(begin, end, name_end);
-        Diagnostic &d =
-            report(Code::ForeignSyntax, begin, digits.empty() ? begin + 1 : end,
-                   digits.empty() ? "a comment begins with `//`" : "there is no preprocessor");
-        if (digits.empty())
-            d.help("write `//`", {{span(begin, begin + 1), "//"}});
-        else if (digits == "define")
-            d.help("a value is bound by `let name = …`, a function by `fn name(x) = …`");
-        else
-            d.help(
-                "other files are brought in by `import \"file.sdf\"`; a comment begins with `//`");
-        return static_cast<std::uint32_t>(line_end);
-    }
-    add(Tok::Bad, begin, end);
-    Diagnostic &d =
-        report(Code::BadColor, begin, end, "a colour takes 3, 6 or 8 hex digits after the `#`");
-    if (all_hex)
-        d.note(fmt::format("here are {}", digits.size()));
-    else
-        d.note("hex digits are 0 to 9 and a to f");
-    return end;
 }
 
 namespace {
@@ -336,6 +272,8 @@ constexpr Sign long_signs[] = {
     {"<=", Tok::LessEqual, "", ""},
     {">=", Tok::GreaterEqual, "", ""},
     {"<>", Tok::NotEqual, "inequality is written `!=`", "!="},
+    {"~=", Tok::NotEqual, "inequality is written `!=`", "!="},
+    {"?.", Tok::Dot, "there is no `?.`: every name has a value", "."},
     {"&&", Tok::And, "the logical and is a word", "and"},
     {"||", Tok::Or, "the logical or is a word", "or"},
     {"**", Tok::Caret, "a power is written `^`", "^"},
@@ -364,6 +302,14 @@ void Lexer::sign(std::uint32_t begin, std::uint32_t end) {
         }
         add(Tok::Not, begin, end);
         foreign(begin, end, "the logical not is a word", "not ");
+        return;
+    }
+    if (text == "...") {
+        const Tok before = words_.tokens.empty() ? Tok::End : words_.tokens.back().kind;
+        add(Tok::DotDot, begin, end);
+        if (is_one_of(before, {Tok::Name, Tok::Number, Tok::Close, Tok::ListClose}))
+            report(Code::ForeignSyntax, begin, end, "a range is written with two points")
+                .help("write `..` for a range without its end, `..=` for one with it");
         return;
     }
     if (text.size() == 1) return add(static_cast<Tok>(text[0]), begin, end);
@@ -419,6 +365,13 @@ std::optional<Span> Lexer::assignment_from(std::uint32_t begin, std::uint32_t en
     return span(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
 }
 
+// What OpenSCAD keeps in names of its own.
+static bool is_special(std::string_view name) {
+    constexpr std::array<std::string_view, 9> special = {"fn",  "fa",  "fs",  "t",      "vpr",
+                                                         "vpt", "vpd", "vpf", "preview"};
+    return std::find(special.begin(), special.end(), name) != special.end() || name == "children";
+}
+
 void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
     if (begin == 0 && slice(begin, end) == "\xEF\xBB\xBF") return; // a byte order mark
     const CodePoint first = decode_utf8(source_.text, begin);
@@ -433,6 +386,23 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
     if (text == "\xC2\xA0") { // a no-break space
         report(Code::BadCharacter, begin, end, "this is a no-break space")
             .help("write an ordinary space", {{span(begin, end), " "}});
+        return;
+    }
+    if (text == "@" && !fresh_line_ && !words_.tokens.empty() &&
+        is_one_of(words_.tokens.back().kind, {Tok::Name, Tok::Close, Tok::ListClose})) {
+        add(Tok::Star, begin, end);
+        foreign(begin, end, "a product of matrices and vectors is written `*`", "*");
+        return;
+    }
+    if (text[0] == '$' && text.size() > 1 && !is_special(text.substr(1))) {
+        add(Tok::Name, begin + 1, end);
+        foreign(begin, end, "a name has no `$` before it", std::string(text.substr(1)));
+        return;
+    }
+    const std::string_view rest = std::string_view(source_.text).substr(end);
+    if (text == "\\" && without_end(rest.substr(0, rest.find('\n'))).empty()) {
+        report(Code::BadCharacter, begin, end, "a line that ends in an operator goes on by itself")
+            .help("leave the `\\` away", {{span(begin, end), ""}});
         return;
     }
     add(Tok::Bad, begin, end);
@@ -455,6 +425,14 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
                       "facets");
         if (const std::optional<Span> all = assignment_from(begin, end))
             d.help("leave it away", {{*all, ""}});
+    } else if (text[0] == '@') {
+        report(Code::BadCharacter, begin, end, "the language does not use " + quoted_code(text))
+            .help(text == "@param"
+                      ? "a parameter is declared by `param r = 1 in 0..2`"
+                      : "leave it away: what stands here is neither marked nor decorated");
+    } else if (text[0] == '~') {
+        report(Code::BadCharacter, begin, end, "the language does not use `~`")
+            .note("there are no operators on bits; the logical not is `not`");
     } else {
         report(Code::BadCharacter, begin, end,
                first.value < 0x20 ? "a control character stands here"

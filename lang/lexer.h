@@ -20,10 +20,12 @@ class Lexer {
     void number(std::uint32_t begin, std::uint32_t end);
     void string(std::uint32_t begin, std::uint32_t end);
     void unclosed_string(std::uint32_t begin, std::uint32_t end);
+    std::uint32_t by_hand(std::uint32_t begin);
+    std::uint32_t smart_string(std::uint32_t begin);
     void quoted(std::uint32_t begin, std::uint32_t end);        // 'text'
     std::uint32_t hash(std::uint32_t begin, std::uint32_t end); // the end of what was understood
-    std::uint32_t defined_name(std::uint32_t from) const;
-    std::uint32_t define(std::uint32_t begin, std::uint32_t end, std::uint32_t name_end);
+    std::uint32_t define(std::uint32_t begin, std::uint32_t end);
+    void directive(std::uint32_t begin, std::uint32_t end, std::uint32_t line_end);
     void sign(std::uint32_t begin, std::uint32_t end);
     void strange(std::uint32_t begin, std::uint32_t end); // bytes that begin no word
 
@@ -48,8 +50,31 @@ class Lexer {
     SourceId id_;
     Diagnostics &diagnostics_;
     Words words_;
+    bool is_named(std::string_view number) const;
+
     bool fresh_line_ = true;
+    std::uint32_t open_choices_ = 0; // `#if`s whose `#endif` is yet to come
 };
+
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+inline bool is_word_char(char c) {
+    return c == '_' || is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+inline bool is_hex(char c) {
+    return is_digit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
+}
+inline unsigned hex_value(char c) {
+    return static_cast<unsigned>(is_digit(c) ? c - '0' : (c | 0x20) - 'a' + 10);
+}
+
+// A word that begins like a number and is none (bad_numbers.cpp).
+struct BadNumber {
+    std::string message, help, replacement;
+};
+std::size_t number_length(std::string_view word); // of the digits that it begins with
+BadNumber explain_bad_number(std::string_view word, bool named);
+bool is_length_unit(std::string_view word); // `mm`, `in`: elsewhere
+bool is_degree_word(std::string_view word);
 
 // The value of a number word, its unit applied; nothing where the word is no number of the
 // language.

@@ -49,7 +49,7 @@ struct fraction : seq<one<'.'>, plus<digit>> {};
 struct exponent : seq<one<'e', 'E'>, opt<one<'+', '-'>>, plus<digit>> {};
 struct lonely_point : seq<one<'.'>, not_at<sor<one<'.'>, pegtl::identifier_first>>> {};
 struct suffix_point : seq<one<'.'>, one<'f', 'F'>, not_at<sor<word_char, one<'('>>>> {};
-struct degree_sign : string<'\xC2', '\xB0'> {};
+struct degree_sign : sor<string<'\xC2', '\xB0'>, string<'\xC2', '\xBA'>, string<'\xCB', '\x9A'>> {};
 struct number_tail : seq<opt<exponent>, star<word_char>, opt<degree_sign>> {};
 struct number : sor<seq<plus<digit>, opt<sor<fraction, lonely_point, suffix_point>>, number_tail>,
                     seq<fraction, number_tail>> {};
@@ -60,15 +60,16 @@ struct unclosed_text : seq<one<'"'>, rest_of_line> {};
 template <char sign> struct quoted_by
     : seq<one<sign>, star<pegtl::not_one<sign, '\n'>>, one<sign>> {};
 struct quoted : sor<quoted_by<'\''>, quoted_by<'`'>> {};
-struct hash : seq<one<'#'>, star<word_char>> {};
 // The first alternative spares the signs that begin no longer one all other attempts.
 struct sign
-    : sor<one<'(', ')', '[', ']', '{', '}', ',', ':', ';', '?'>, string<'.', '.', '='>,
-          string<'.', '.', '<'>, string<'=', '=', '='>, string<'!', '=', '='>, string<'-', '>'>,
-          string<'=', '>'>, string<'.', '.'>, string<'=', '='>, string<'!', '='>, string<'<', '='>,
-          string<'>', '='>, string<'<', '>'>, string<'&', '&'>, string<'|', '|'>, string<'*', '*'>,
-          string<'+', '='>, string<'-', '='>, string<'*', '='>, string<'/', '='>, string<'%', '='>,
-          string<'^', '='>, string<'|', '='>, string<'&', '='>, string<'+', '+'>,
+    : sor<seq<string<'?', '.'>, not_at<digit>>,
+          one<'(', ')', '[', ']', '{', '}', ',', ':', ';', '?'>, string<'.', '.', '='>,
+          string<'.', '.', '<'>, string<'.', '.', '.'>, string<'~', '='>, string<'=', '=', '='>,
+          string<'!', '=', '='>, string<'-', '>'>, string<'=', '>'>, string<'.', '.'>,
+          string<'=', '='>, string<'!', '='>, string<'<', '='>, string<'>', '='>, string<'<', '>'>,
+          string<'&', '&'>, string<'|', '|'>, string<'*', '*'>, string<'+', '='>, string<'-', '='>,
+          string<'*', '='>, string<'/', '='>, string<'%', '='>, string<'^', '='>, string<'|', '='>,
+          string<'&', '='>, string<'+', '+'>,
           seq<string<'-', '-'>, at<star<one<' ', '\t', '\r'>>, sor<eof, one<'\n', ';', ')', '}'>>>>,
           one<'.', '=', '|', '&', '<', '>', '+', '-', '*', '/', '%', '^', '!'>> {};
 // Bytes outside ASCII hang together, with what touches them.
@@ -78,7 +79,7 @@ struct strange
 };
 
 struct any_word : sor<blank, word, line_end, line_comment, block_comment, unclosed_comment, number,
-                      sign, text, unclosed_text, quoted, hash, strange> {};
+                      sign, text, unclosed_text, quoted, strange> {};
 
 template <class Rule> struct action : pegtl::nothing<Rule> {};
 
@@ -463,15 +464,11 @@ static Words read_words(const Source &source, SourceId id, std::uint32_t begin, 
                 .help("make many like shapes by a loop; `--limit memory=N` allows N MiB");
             return Lexer(source, id, diagnostics).take(); // one cause, one report
         }
-        if (in.peek_char() == '#') {
-            const char *begin = in.current();
-            pegtl::parse<words::hash>(in);
-            const auto end = lexer.hash(static_cast<std::uint32_t>(begin - start),
-                                        static_cast<std::uint32_t>(in.current() - start));
-            in.bump_in_this_line(end - static_cast<std::size_t>(in.current() - start));
-        } else {
+        const auto at = static_cast<std::uint32_t>(in.current() - start);
+        if (const std::uint32_t past = lexer.by_hand(at); past > 0)
+            in.bump_in_this_line(past - at);
+        else
             pegtl::parse<words::any_word, words::action>(in, lexer, start);
-        }
     }
     return lexer.take();
 }

@@ -118,6 +118,11 @@ struct Tokens {
 };
 
 Words read_words(const Source &source, SourceId id, Diagnostics &diagnostics); // in parse.cpp
+// The words with functions of other languages read as ours, reported; empty where there are none
+// (foreign_lambdas.cpp).
+std::vector<Token> read_foreign_lambdas(const Source &source, SourceId id,
+                                        const std::vector<Token> &words, Diagnostics &diagnostics);
+bool is_foreign_transform(std::string_view name); // what OpenSCAD writes before a shape
 // Settles where statements end, and reports what cannot be a word.
 Tokens lay_out(const Source &source, SourceId id, const Words &words, Diagnostics &diagnostics);
 

@@ -227,6 +227,7 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
             d.help("a scene's names keep their value: give the new value a name of its own");
         else
             d.help("declare it with `var` inside the function");
+        if (!is_argument) assign(ev, found->frame, found->slot, poison()); // one cause, one report
         return;
     }
     Value old = binding.value;

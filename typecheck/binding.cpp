@@ -53,6 +53,21 @@ static void help_with_row(Interpreter &ev, Diagnostic &d, std::string_view name,
     }
 }
 
+// The comma of `sphere(1,5)`, where one argument is too many.
+static std::optional<Span> decimal_comma(const Interpreter &ev, std::span<const Formal> formals,
+                                         std::span<const Argument> args) {
+    if (args.size() != formals.size() + 1) return std::nullopt;
+    for (std::size_t i = 0; i + 1 < args.size(); ++i) {
+        const Argument &a = args[i], &b = args[i + 1];
+        if (a.name || b.name || a.value.kind != ValueKind::Int || b.value.kind != ValueKind::Int ||
+            !a.plain_literal || !b.plain_literal || a.span.source != b.span.source)
+            continue;
+        const Span between{a.span.source, a.span.end, b.span.begin};
+        if (between.begin < between.end && text(ev.sources, between) == ",") return between;
+    }
+    return std::nullopt;
+}
+
 static void report_too_many(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
                             std::span<const Argument> args, const Argument &first) {
     std::size_t given = 0;
@@ -61,7 +76,16 @@ static void report_too_many(Interpreter &ev, std::string_view name, std::span<co
                            fmt::format("`{}` takes {} argument{}, not {}", name, formals.size(),
                                        formals.size() == 1 ? "" : "s", given))
                         .note(fmt::format("it is `{}`", signature_text(name, formals)));
-    if (args[0].value.kind == ValueKind::Shape) {
+    if (const auto comma = decimal_comma(ev, formals, args)) {
+        d.help("a fraction is written with a point", {{*comma, "."}});
+    } else if (name == "paint" && args.size() == 4 && args[0].value.kind == ValueKind::Shape &&
+               std::ranges::all_of(args.subspan(1), [&](const Argument &b) {
+                   return !b.name && is_scalar(ev, b.value);
+               })) {
+        const Span row = join(args[1].span, args[3].span);
+        const std::string written = fmt::format("rgb({})", text(ev.sources, row));
+        d.help(fmt::format("write `{}`", written), {{row, written}});
+    } else if (args[0].value.kind == ValueKind::Shape) {
         help_with_shape(d, name);
         help_with_row(ev, d, name, formals, args);
     } else if (!formals.empty() && formals[0].vector_size > 0 &&
@@ -81,11 +105,37 @@ static void report_missing(Interpreter &ev, std::string_view name, std::span<con
     Diagnostic &d = report(ev, Code::MissingArgument, call,
                            fmt::format("`{}` wants an argument `{}`", name, missing.name));
     d.note(fmt::format("it is `{}`", signature_text(name, formals)));
+    const auto required = std::ranges::count_if(
+        formals, [](const Formal &f) { return !f.optional && !f.takes_rest; });
+    if (required == 1 && formals.back().takes_rest && !args.empty() && args.back().trailing)
+        d.help(fmt::format("write `{}(0.2) {{ … }}`", name));
     if (name == "range" && args.size() == 1) { // Python's
         const Span before{args[0].span.source, args[0].span.begin, args[0].span.begin};
         d.help("a range begins somewhere: `range(0, n)`, or `0..n`", {{before, "0, "}});
     }
     if (!is_library_place(ev, missing.declared)) d.label(missing.declared, "declared here");
+}
+
+// The parameter that still wants an argument, where there is one such and one argument for it.
+static std::string_view only_one_left(std::span<const Formal> formals,
+                                      std::span<const Argument> args,
+                                      std::span<const Given> bound) {
+    std::string_view left;
+    std::size_t unnamed = 0;
+    bool named = false;
+    for (const Argument &a : args) {
+        named = named || a.name;
+        unnamed += named && !a.name && !a.trailing ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < formals.size(); ++i) {
+        const bool given = bound[i].given || std::ranges::any_of(args, [&](const Argument &a) {
+                               return a.name && a.name->text == formals[i].name;
+                           });
+        if (given || formals[i].optional || formals[i].takes_rest) continue;
+        if (!left.empty()) return {};
+        left = formals[i].name;
+    }
+    return unnamed == 1 ? left : std::string_view();
 }
 
 std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_view name,
@@ -148,10 +198,15 @@ std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_vi
             continue;
         }
         if (first_named) {
-            report(ev, Code::ArgumentOrder, a.span,
-                   "an argument without a name stands behind one with a name")
-                .label(*first_named, "named here")
-                .help("put it in front, or name it too");
+            Diagnostic &d = report(ev, Code::ArgumentOrder, a.span,
+                                   "an argument without a name stands behind one with a name")
+                                .label(*first_named, "named here");
+            const std::string_view left = only_one_left(formals, args, bound);
+            if (left.empty())
+                d.help("put it in front, or name it too");
+            else
+                d.help(fmt::format("write `{}: {}`", left, text(ev.sources, a.span)),
+                       {{{a.span.source, a.span.begin, a.span.begin}, fmt::format("{}: ", left)}});
             ok = false;
             continue;
         }

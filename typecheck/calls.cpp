@@ -69,6 +69,8 @@ static Value call_closure(Interpreter &ev, const Value &callee, std::string_view
         return poison();
     auto bound = bind_arguments(ev, name, formals, args, call, callee_span);
     if (!bound) return poison();
+    if (c.library && !inside_library(ev) && color_in_quotes(ev, name, formals, *bound))
+        return poison();
     // defaults are evaluated where the function stands, and see the parameters before them
     std::optional<std::uint32_t> frame;
     std::vector<Value> values;
@@ -238,7 +240,9 @@ Value call_value(Interpreter &ev, const Value &callee, std::string_view name,
     if (callee.kind == ValueKind::List ||
         (is_numeric(callee) && ir::is_vector(numeric_type(ev, callee))))
         d.help("an element is `l[i]`");
-    if (is_scalar(ev, callee)) d.help("a product is written with `*`");
+    if (is_scalar(ev, callee))
+        d.help("a product is written with `*`",
+               {{{callee_span.source, callee_span.end, callee_span.end}, " * "}});
     return poison();
 }
 
@@ -370,7 +374,7 @@ Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::C
                        fmt::format("`{}` is {}, not a function", m->name.text, describe(ev, *f)));
                 return poison();
             }
-            const std::string near = likely_name(ev, frame, m->name.text);
+            const std::string near = likely_name(ev, frame, m->name.text, {Use::Called, &object});
             if (lacking(ev, m->name.text, near)) return poison();
             Diagnostic &d = report(ev, Code::UnknownMember, m->name.span,
                                    fmt::format("there is no function `{}` for {}", m->name.text,
@@ -392,7 +396,13 @@ Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::C
     }
     std::string_view name;
     if (auto *n = std::get_if<lang::Name>(&callee.kind)) name = n->text;
-    Value f = eval(ev, ast, call.callee, frame);
+    std::optional<Value> named;
+    if (auto *n = std::get_if<lang::Name>(&callee.kind);
+        n && !look_up(ev, frame, symbol_of(ast, *n))) {
+        report_unknown_name(ev, frame, n->text, callee.span, {Use::Called, nullptr, &ast});
+        named = poison();
+    }
+    Value f = named ? *named : eval(ev, ast, call.callee, frame);
     read_arguments(ev, ast, call, frame, args);
     if (is_poison(f)) check_as_ours(ev, name, args, place, callee.span, frame);
     return call_value(ev, f, name, args, place, callee.span);

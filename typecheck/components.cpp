@@ -30,8 +30,12 @@ Value swizzle(Interpreter &ev, const Value &v, const std::string &letters, Span 
     auto indices =
         ir::is_vector(type) ? swizzle_indices(letters, ir::components(type)) : std::nullopt;
     if (!indices) {
-        report(ev, Code::UnknownMember, place,
-               fmt::format("{} has no component `{}`", describe(ev, v), letters));
+        Diagnostic &d = report(ev, Code::UnknownMember, place,
+                               fmt::format("{} has no component `{}`", describe(ev, v), letters));
+        if (ir::is_vector(type))
+            d.note(ir::components(type) == 2   ? "its components are x and y"
+                   : ir::components(type) == 3 ? "its components are x, y and z"
+                                               : "its components are x, y, z and w");
         return poison();
     }
     bool color = v.color && indices->size() == 3;

@@ -42,11 +42,17 @@ bool check_type(Interpreter &ev, const lang::TypeExpr &type) {
         ++ev.quiet_errors;
         return false;
     }
+    if (!is_library_place(ev, type.span) && type_told_before(ev, type.name, type.span))
+        return false;
     static const std::vector<std::string> names = {
         "float", "int",   "bool",  "string", "vec2",     "vec3",  "vec4",   "mat2",  "mat3",
         "mat4",  "color", "shape", "shape2", "material", "light", "region", "angle", "angles"};
     Diagnostic &d = ev.diagnostics.add(Code::UnknownName, type.span,
                                        fmt::format("there is no type `{}`", type.name));
+    if (const std::string_view way = way_of_type(type.name); !way.empty()) {
+        d.help(std::string(way));
+        return false;
+    }
     std::string near(type_from_elsewhere(type.name));
     if (near.empty()) near = nearest_name(type.name, names);
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{type.span, near}});
@@ -257,6 +263,8 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
         d.note("a region is `ball(r)`, `aabb(lo, hi)`, `tube(axis, r)` or `everywhere`");
     if (type.kind == lang::TypeExpr::Kind::List && is_vector_type(type.items[0]))
         d.help("each vector stands in brackets of its own: `[[0, 0], [1, 0], [1, 1]]`");
+    if (type.kind == lang::TypeExpr::Kind::Name && is_vector_type(type) && is_function(v))
+        d.help("a vector is what the function gives where it is called: `vec3(1, 2, 3)`");
     if (v.kind == ValueKind::Shape) help_with_shape(d, what.of);
     if (type.kind == lang::TypeExpr::Kind::Name) help_with_value(ev, d, v, type.named, place);
     if (what.of == "rotate" && what.name == "angle" && v.kind == ValueKind::Vec)

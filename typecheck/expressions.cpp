@@ -17,7 +17,7 @@ using ir::Type;
 static Value eval_name(Interpreter &ev, const File &ast, const lang::Name &name, Span place,
                        std::uint32_t frame) {
     if (auto v = look_up(ev, frame, symbol_of(ast, name))) return *v;
-    report_unknown_name(ev, frame, name.text, place);
+    report_unknown_name(ev, frame, name.text, place, {Use::Value, nullptr, &ast});
     return poison();
 }
 

@@ -243,6 +243,7 @@ struct Interpreter {
     std::size_t made = 0; // bytes of what the arenas below do not count themselves: see `held`
     bool out_of_budget = false;
     std::size_t names_compared = 0;
+    std::map<std::pair<std::uint32_t, std::string>, Span> unknown_names{}; // by file, as first told
     std::map<std::vector<std::uint64_t>, Specialization> specializations{};
     std::unordered_map<std::vector<std::uint64_t>, Value, HashOfWords> remembered{};
     std::map<std::pair<const File *, std::uint32_t>, bool>
@@ -294,18 +295,6 @@ inline Symbol symbol_of(const File &file, const lang::Name &name) {
     return file.symbols[name.word];
 }
 std::vector<std::string> visible_names(Interpreter &ev, std::uint32_t frame);
-// Adds what does to shapes what the name makes one expect, where something does: to an error about
-// a shape that was given to what takes none.
-void help_with_shape(Diagnostic &d, std::string_view name);
-// Whether so many names more may be compared with one that nobody declared: a text of nothing else
-// has thousands of them, and only the first are worth a suggestion.
-bool may_compare_names(Interpreter &ev, std::size_t count);
-// The name that another is likely to be meant for; empty: none.
-std::string likely_name(Interpreter &ev, std::uint32_t frame, const std::string &name);
-void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place);
-// Whether a name may be one that a file which could not be read would have brought. Short names are
-// near to others by chance.
-bool lacking(const Interpreter &ev, const std::string &name, const std::string &near);
 std::string way_inside(const std::string &path); // how a file elsewhere can be read
 void check_names(Interpreter &ev, const File &ast, std::uint32_t module_frame);
 

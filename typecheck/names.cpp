@@ -114,61 +114,6 @@ std::vector<std::string> visible_names(Interpreter &ev, std::uint32_t frame) {
     return names;
 }
 
-bool may_compare_names(Interpreter &ev, std::size_t count) {
-    constexpr std::size_t most_compared = 3'000'000; // names, over all that nobody declared
-    ev.names_compared += count;
-    return ev.names_compared <= most_compared;
-}
-
-std::string likely_name(Interpreter &ev, std::uint32_t frame, const std::string &name) {
-    if (const std::string_view known = name_from_elsewhere(name); !known.empty())
-        return std::string(known);
-    if (!way_from_elsewhere(name).empty()) return {};
-    if (!may_compare_names(ev, ev.symbol_names.size())) return {};
-    std::vector<std::string> names = visible_names(ev, frame);
-    // `sdBox`, `opUnion`, `sdf_sphere`: a library of shader code has its prefixes
-    for (const std::string_view prefix : {"sdf_", "sd_", "op_", "sdf", "sd", "op"}) {
-        if (!name.starts_with(prefix) || name.size() < prefix.size() + 3) continue;
-        const std::string rest = name.substr(prefix.size());
-        if (const auto ours = name_from_elsewhere(rest); !ours.empty()) return std::string(ours);
-        const std::string near = nearest_name(rest, names);
-        if (!near.empty() && edit_distance(near, rest) <= 1) return near;
-    }
-    return nearest_name(name, names);
-}
-
-bool lacking(const Interpreter &ev, const std::string &name, const std::string &near) {
-    return ev.modules[ev.current_module].lacks_names && (near.empty() || name.size() < 5);
-}
-
-// `45*deg`: the unit touches its number.
-static std::vector<Edit> unit_edit(const Interpreter &ev, const std::string &name, Span place) {
-    if (name != "deg") return {};
-    const std::string_view before = text(ev.sources, {place.source, 0, place.begin});
-    const std::size_t sign = before.find_last_not_of(" \t");
-    if (sign == before.npos || before[sign] != '*' || sign == 0) return {};
-    const std::size_t digit = before.find_last_not_of(" \t", sign - 1);
-    if (digit == before.npos || before[digit] < '0' || before[digit] > '9') return {};
-    return {{{place.source, static_cast<std::uint32_t>(digit + 1), place.begin}, ""}};
-}
-
-void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string &name,
-                         Span place) {
-    const std::string near = likely_name(ev, frame, name);
-    if (lacking(ev, name, near)) return; // one cause, one report
-    Diagnostic &d = report(ev, Code::UnknownName, place,
-                           fmt::format("nothing here is called `{}`", short_name(name)));
-    if (ev.in_field == 0 && (name == "p" || name == "pos" || name == "uv")) {
-        d.help("the point is the argument of a function: `implicit(p => length(p) - 1)`");
-        return;
-    }
-    const std::string_view way = way_from_elsewhere(name);
-    if (!way.empty()) d.help(std::string(way), unit_edit(ev, name, place));
-    if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{place, near}});
-    if (name == "cube" || name == "square")
-        d.note(fmt::format("a `{}` has its middle at the origin", near));
-}
-
 // -- unknown names in bodies that nobody calls ---------------------------------------------------
 
 namespace {
@@ -291,7 +236,8 @@ struct NameWalk {
     void expr(lang::ExprId id) {
         const lang::Expr &e = ast.exprs[id];
         if (auto *n = std::get_if<lang::Name>(&e.kind)) {
-            if (!known(n->text)) report_unknown_name(ev, frame, n->text, e.span);
+            if (!known(n->text))
+                report_unknown_name(ev, frame, n->text, e.span, {Use::Value, nullptr, &ast});
         } else if (auto *l = std::get_if<lang::List>(&e.kind)) {
             for (lang::ExprId item : l->items) expr(item);
         } else if (auto *c = std::get_if<lang::Comprehension>(&e.kind))
@@ -308,9 +254,13 @@ struct NameWalk {
                 expr(m->object);
                 if (!is_module(m->object)) arguments(*call, m->name.text);
             } else {
-                expr(call->callee);
-                if (auto *n = std::get_if<lang::Name>(&ast.exprs[call->callee].kind))
-                    arguments(*call, n->text);
+                auto *n = std::get_if<lang::Name>(&ast.exprs[call->callee].kind);
+                if (n && !known(n->text))
+                    report_unknown_name(ev, frame, n->text, ast.exprs[call->callee].span,
+                                        {Use::Called, nullptr, &ast});
+                else
+                    expr(call->callee);
+                if (n) arguments(*call, n->text);
             }
             for (const lang::Argument &a : call->arguments) expr(a.value);
             if (call->trailing) block(*call->trailing);

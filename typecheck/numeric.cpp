@@ -4,6 +4,7 @@
 #include "ir/passes/walk.h"
 #include "typecheck/interpreter.h"
 #include "typecheck/places.h"
+#include "typecheck/remedies.h"
 
 #include <fmt/format.h>
 
@@ -380,7 +381,8 @@ static Value combined(Interpreter &ev, lang::BinaryOp op, const Value &left, con
                     {{a_place.source, a_place.end, b_place.begin}, ", "},
                     {{a_place.source, b_place.end, b_place.end}, ")"}});
         if (wrong.kind == ValueKind::Shape && op == BinaryOp::Add)
-            d.help("shapes are united with `|`");
+            d.help("shapes are united with `|`",
+                   sign_edit(ev, a_place, b_place, '+', a.kind == b.kind ? "|" : ""));
         if (wrong.kind == ValueKind::Shape && op == BinaryOp::Mul)
             d.help("a shape is made larger with `.scale(2)`");
         return poison();

@@ -63,6 +63,10 @@ constexpr std::pair<std::string_view, std::string_view> argument_names[] = {
     {"dir", "direction"},
     {"h", "height"},
     {"r", "radius"},
+    {"r1", "major"},
+    {"r2", "minor"},
+    {"R", "major"},
+    {"r", "minor"},
     {"r1", "bottom"},
     {"r2", "top"},
     {"bottom_radius", "bottom"},
@@ -103,6 +107,12 @@ constexpr std::pair<std::string_view, std::string_view> argument_names[] = {
 constexpr std::array<std::string_view, 8> needless = {
     "center", "centre", "centered", "segments", "resolution", "convexity", "slices", "fn"};
 
+// What physically based materials have.
+bool is_gloss(std::string_view name) {
+    return name == "roughness" || name == "metallic" || name == "metalness" || name == "gloss" ||
+           name == "glossiness" || name == "smoothness" || name == "reflectivity";
+}
+
 bool has(std::span<const Formal> formals, std::string_view name) {
     return std::ranges::any_of(formals, [&](const Formal &f) { return f.name == name; });
 }
@@ -136,11 +146,20 @@ Span with_comma(std::span<const Argument> args, std::size_t at, Span callee) {
     return own;
 }
 
+// The axis that an argument's name says: `x`; of a box also `width`, `height`, `depth`.
+char axis_of(std::string_view name, std::string_view function) {
+    if (name == "x" || name == "y" || name == "z") return name[0];
+    if (function != "box" && function != "rectangle" && function != "ellipsoid") return ' ';
+    if (name == "width" || name == "w") return 'x';
+    if (name == "height" || name == "h") return 'y';
+    return name == "depth" || name == "d" || name == "length" ? 'z' : ' ';
+}
+
 // `x: 2, z: 3` of a function that takes an axis, or a vector.
 bool letters_remedy(Interpreter &ev, std::string_view function, std::span<const Formal> formals,
                     std::span<const Argument> args, const std::vector<std::size_t> &letters,
                     Span callee, Fix &fix) {
-    const auto letter = [&](std::size_t i) { return args[i].name->text[0]; };
+    const auto letter = [&](std::size_t i) { return axis_of(args[i].name->text, function); };
     const Argument &first = args[letters[0]];
     std::array<std::string, 3> parts;
     parts.fill(function == "scale" ? "1" : "0");
@@ -187,9 +206,13 @@ Fix remedy_of_arguments(Interpreter &ev, std::string_view function, std::span<co
                         Span callee) {
     Fix fix;
     std::vector<std::size_t> letters, others;
+    const auto axes = std::ranges::count_if(
+        unknown, [&](std::size_t i) { return axis_of(args[i].name->text, function) != ' '; });
+    const bool all_axes = axes == (function == "rectangle" ? 2 : 3);
     for (std::size_t i : unknown) {
         const std::string &name = args[i].name->text;
-        const bool is_letter = name == "x" || name == "y" || name == "z";
+        const bool is_letter =
+            all_axes ? axis_of(name, function) != ' ' : name == "x" || name == "y" || name == "z";
         (is_letter ? letters : others).push_back(i);
     }
     std::vector<std::string> proposed; // each of our arguments once
@@ -219,6 +242,10 @@ Fix remedy_of_arguments(Interpreter &ev, std::string_view function, std::span<co
         } else if ((name == "r1" || name == "r2") && has(formals, "radius")) {
             if (name == "r2" && fix.message.find("capped_cone") != std::string::npos) continue;
             say("a cone without its tip is `capped_cone(bottom: …, top: …, height: …)`");
+        } else if (function == "material" && is_gloss(name)) {
+            say(fmt::format("for `{}` there is `exponent`, from 1 (dull) to 1000 (glossy), and "
+                            "`specular`, the highlight's colour",
+                            name));
         } else if (name == "within" && function != "within") {
             say("a region stands behind the whole: `.within(ball(3))`");
         } else if (const std::string ours = our_argument(name, formals);
@@ -255,12 +282,38 @@ Fix remedy_of_row(std::span<const Argument> row, int vector_size) {
     return fix;
 }
 
+// The arguments in the order of the parameters that take them, where all have places alone and
+// some do not fit theirs.
+static std::optional<std::vector<std::size_t>>
+other_order(Interpreter &ev, const lang::Function &function, std::span<const Argument> args) {
+    constexpr std::size_t most = 6;
+    const auto &parameters = function.parameters;
+    if (args.size() > std::min(most, parameters.size()) || args.size() < 2 ||
+        std::ranges::any_of(args, [](const Argument &a) { return a.name || a.trailing; }))
+        return std::nullopt;
+    const auto takes = [&](std::size_t p, std::size_t a) {
+        return !parameters[p].type || accepts(ev, args[a].value, *parameters[p].type);
+    };
+    std::vector<std::size_t> order;
+    bool fit = true;
+    for (std::size_t p = 0; p < args.size(); ++p) {
+        fit = fit && takes(p, p);
+        std::size_t a = 0;
+        while (a < args.size() && (std::ranges::find(order, a) != order.end() || !takes(p, a))) ++a;
+        if (a == args.size()) return std::nullopt;
+        order.push_back(a);
+    }
+    return fit ? std::nullopt : std::optional(order);
+}
+
 bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Function &function,
                         std::span<const Formal> formals, std::span<const Argument> args,
                         Span call) {
-    if (args.size() < 2 || function.parameters.empty() || !function.parameters[0].type ||
-        std::ranges::any_of(args,
-                            [](const Argument &a) { return a.trailing || is_poison(a.value); }))
+    const bool lone_list = args.size() == 1 && args[0].value.kind == ValueKind::List;
+    if ((args.size() < 2 && !lone_list) || function.parameters.empty() ||
+        !function.parameters[0].type || std::ranges::any_of(args, [](const Argument &a) {
+            return a.trailing || is_poison(a.value);
+        }))
         return false;
     using lang::TypeName;
     const lang::TypeExpr &type = *function.parameters[0].type;
@@ -268,6 +321,13 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
                              (type.named == TypeName::Shape || type.named == TypeName::Shape2 ||
                               type.named == TypeName::AnyShape);
     const auto is_shape = [](const Argument &a) { return a.value.kind == ValueKind::Shape; };
+    const auto is_shapes = [&](const Argument &a) { // or a list of them
+        if (a.value.kind != ValueKind::List) return is_shape(a);
+        const std::vector<Value> &items = ev.lists[a.value.id];
+        return !items.empty() && std::ranges::all_of(items, [](const Value &v) {
+            return v.kind == ValueKind::Shape;
+        });
+    };
     const auto join_others = [&](const Argument &moved) {
         std::string list;
         for (const Argument &a : args)
@@ -280,6 +340,31 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
             d.help(fmt::format("write `{}`", written), {{call, written}});
         return true;
     };
+    if (const auto order =
+            formals.back().takes_rest ? std::nullopt : other_order(ev, function, args)) {
+        const bool method = text_of(ev, args[0].span) ==
+                            text_of(ev, call).substr(0, args[0].span.end - args[0].span.begin);
+        const bool chained = method || takes_shape;
+        const std::string first = text_of(ev, args[(*order)[0]].span);
+        const std::size_t shapes = static_cast<std::size_t>(std::ranges::count_if(args, is_shape));
+        std::string list;
+        for (std::size_t i = 1; i < order->size(); ++i)
+            list += (i > 1 ? ", " : "") + text_of(ev, args[(*order)[i]].span);
+        const std::string written =
+            chained && (method || shapes == 1)
+                ? fmt::format("{}.{}({})", operand_text(ev, args[(*order)[0]].span), name, list)
+                : fmt::format("{}({}, {})", name, first, list);
+        std::size_t wrong = 0;
+        while (wrong + 1 < order->size() && (*order)[wrong] == wrong) ++wrong;
+        Diagnostic &d =
+            report(ev, Code::TypeMismatch, args[wrong].span,
+                   takes_shape && !is_shape(args[0])
+                       ? fmt::format("the shape stands first, before what `{}` does to it", name)
+                       : fmt::format("`{}` of `{}` stands before this", formals[wrong].name, name));
+        if (written.find('\n') == std::string::npos)
+            d.help(fmt::format("write `{}`", written), {{call, written}});
+        return true;
+    }
     if (takes_shape && !args[0].name && !is_shape(args[0])) {
         const auto shape = std::ranges::find_if(args, is_shape);
         if (shape == args.end() || shape->name) return false;
@@ -288,13 +373,42 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
             fmt::format("{}.{}({})", operand_text(ev, shape->span), name, join_others(*shape)));
     }
     if (formals.back().takes_rest && type.named == TypeName::Float && !args[0].name &&
-        is_shape(args[0])) {
+        is_shapes(args[0])) {
         const auto number = std::ranges::find_if(
             args, [&](const Argument &a) { return !a.name && is_scalar(ev, a.value); });
+        const bool alone =
+            std::ranges::all_of(args, [&](const Argument &a) { return !a.name && is_shapes(a); });
+        if (alone && !formals[0].optional) { // the number is nowhere
+            std::string list;
+            for (const Argument &a : args) list += ", " + text_of(ev, a.span);
+            Diagnostic &d = report(
+                ev, Code::MissingArgument, args[0].span,
+                fmt::format("`{}` wants `{}`, a number, before the shapes", name, formals[0].name));
+            const std::string written = fmt::format("{}(0.2{})", name, list);
+            d.help(fmt::format("write `{}`", written.find('\n') == std::string::npos
+                                                 ? written
+                                                 : fmt::format("{}(0.2, …)", name)));
+            return true;
+        }
         if (number == args.end()) return false;
         return say(
             fmt::format("`{}` of `{}` stands first, before the shapes", formals[0].name, name),
             fmt::format("{}({}, {})", name, text_of(ev, number->span), join_others(*number)));
+    }
+    return false;
+}
+
+bool color_in_quotes(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
+                     std::span<const Given> given) {
+    for (std::size_t i = 0; i < formals.size(); ++i) {
+        const Given &g = given[i];
+        if (!g.given || g.value.kind != ValueKind::String || formals[i].name != "material")
+            continue;
+        Diagnostic &d = report(ev, Code::TypeMismatch, g.span,
+                               fmt::format("{} wants a color or a material, this is a string",
+                                           quoted(formals[i].name, name)));
+        help_with_value(ev, d, g.value, lang::TypeName::Color, g.span);
+        return true;
     }
     return false;
 }
@@ -321,7 +435,10 @@ void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeN
     const std::string &inside = ev.strings[v.id];
     if ((wanted == TypeName::Float || wanted == TypeName::Int) && parse_number(inside))
         d.help("a number is written without quotes", {{place, inside}});
-    const bool known = look_up(ev, ev.prelude_frame, intern(ev, inside)).has_value();
+    const auto named = look_up(ev, ev.prelude_frame, intern(ev, inside));
+    const bool hex = inside.size() == 7 && inside[0] == '#' &&
+                     inside.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+    const bool known = hex || (named && !is_function(*named));
     if (wanted == TypeName::Color || wanted == TypeName::Material)
         d.help("colours are written without quotes: `red`, `#ff0000`",
                known ? std::vector<Edit>{{place, inside}} : std::vector<Edit>{});

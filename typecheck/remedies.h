@@ -6,10 +6,37 @@
 
 namespace fathom::typecheck {
 
+// What a name stands for where it is used: a value, or what is called, perhaps of an object.
+enum class Use { Value, Called };
+struct Wanted {
+    Use use = Use::Value;
+    const Value *object = nullptr;
+    const File *ast = nullptr; // whose top may bind the name further down
+};
+
+// The name that another is likely to be meant for; empty: none.
+std::string likely_name(Interpreter &ev, std::uint32_t frame, const std::string &name,
+                        const Wanted &wanted);
+void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place,
+                         const Wanted &wanted);
+// Whether an unknown type was told elsewhere in the file; then its edit is for this place too.
+bool type_told_before(Interpreter &ev, const std::string &name, Span place);
+// Whether so many names more may be compared with one that nobody declared: a text of nothing else
+// has thousands of them, and only the first are worth a suggestion.
+bool may_compare_names(Interpreter &ev, std::size_t count);
+// Whether a name may be one that a file which could not be read would have brought. Short names are
+// near to others by chance.
+bool lacking(const Interpreter &ev, const std::string &name, const std::string &near);
+// Adds what does to shapes what the name makes one expect, where something does: to an error about
+// a shape that was given to what takes none.
+void help_with_shape(Diagnostic &d, std::string_view name);
+
 // What other languages and libraries call what is here; empty: nothing is known.
 std::string_view name_from_elsewhere(std::string_view name);
 // The same of types.
 std::string_view type_from_elsewhere(std::string_view name);
+// How such types are written here; empty: nothing is known.
+std::string_view way_of_type(std::string_view name);
 // How that is done here which they have a name for and the library has not; empty: nothing is known.
 std::string_view way_from_elsewhere(std::string_view name);
 
@@ -30,9 +57,17 @@ Fix remedy_of_row(std::span<const Argument> row, int vector_size);
 bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Function &function,
                         std::span<const Formal> formals, std::span<const Argument> args, Span call);
 
+// True, and reported, where a material is given as a string: `s.paint("red")`.
+bool color_in_quotes(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
+                     std::span<const Given> given);
+
 // For a value of another type than is wanted.
 void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeName wanted,
                      Span place);
+
+// The edit of one sign between two operands for another; none where what follows binds tighter.
+std::vector<Edit> sign_edit(const Interpreter &ev, Span a, Span b, char sign,
+                            std::string_view ours);
 
 // For what is no shape, in a difference of shapes.
 void help_with_cut(Diagnostic &d, const Value &cut);

@@ -24,17 +24,29 @@ static Value declared_value(Interpreter &ev, const File &ast, lang::ExprId value
     return convert(ev, v, *type, ast.exprs[value].span, quoted(name), ok);
 }
 
+static void report_var_at_top(Interpreter &ev, const File &ast, const lang::Var &var, Span place) {
+    Diagnostic &d =
+        report(ev, Code::WrongPlace, place,
+               "`var` stands inside a function; at the top of a file names do not change");
+    for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
+        auto *a = std::get_if<lang::Assign>(&s.kind);
+        auto *name = a ? std::get_if<lang::Name>(&ast.exprs[a->target].kind) : nullptr;
+        if (!name || name->text != var.name.text) continue;
+        d.label(s.span, "changed here")
+            .help(fmt::format("give each value a name of its own: `let {0} = …`, `let {0}2 = …`",
+                              var.name.text));
+        return;
+    }
+    d.help("write `let`", {{{place.source, place.begin, place.begin + 3}, "let"}});
+}
+
 bool run_simple(Interpreter &ev, const File &ast, const lang::Stmt &stmt, std::uint32_t frame) {
     if (auto *l = std::get_if<lang::Let>(&stmt.kind)) {
         declare(ev, frame, symbol_of(ast, l->name),
                 declared_value(ev, ast, l->value, l->type, l->name.text, frame), false,
                 l->name.span);
     } else if (auto *v = std::get_if<lang::Var>(&stmt.kind)) {
-        if (ev.frames[frame].index)
-            report(ev, Code::WrongPlace, stmt.span,
-                   "`var` stands inside a function; at the top of a file names do not change")
-                .help("write `let`",
-                      {{{stmt.span.source, stmt.span.begin, stmt.span.begin + 3}, "let"}});
+        if (ev.frames[frame].index) report_var_at_top(ev, ast, *v, stmt.span);
         Value value = declared_value(ev, ast, v->value, v->type, v->name.text, frame);
         value.ints = false;
         declare(ev, frame, symbol_of(ast, v->name), value, true, v->name.span);
@@ -183,6 +195,7 @@ static std::optional<Value> condition_value(Interpreter &ev, const File &ast, la
     Diagnostic &d = report(ev, Code::TypeMismatch, ast.exprs[id].span,
                            fmt::format("a condition is a bool, this is {}", describe(ev, v)));
     if (is_scalar(ev, v)) d.help("compare it: `x != 0`");
+    if (is_function(v)) d.help("`=>` makes a function; at least is written `>=`");
     return std::nullopt;
 }
 

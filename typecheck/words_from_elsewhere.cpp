@@ -89,6 +89,20 @@ std::string_view name_from_elsewhere(std::string_view name) {
 
 std::string_view way_from_elsewhere(std::string_view name) {
     static const std::unordered_map<std::string_view, std::string_view> ways = {
+        {"slider", "a slider is declared by `param r = 1 in 0..2`"},
+        {"knob", "a slider is declared by `param r = 1 in 0..2`"},
+        {"mm", "a length has no unit: all of a scene are in the same"},
+        {"cm", "a length has no unit: all of a scene are in the same"},
+        {"self", "there are no objects: a function is given what it needs as arguments"},
+        {"this", "there are no objects: a function is given what it needs as arguments"},
+        {"children", "the shapes that a function is given are a parameter: "
+                     "`fn ring(s) { … s … }`"},
+        {"function", "a function without a name is written `p => …`"},
+        {"lambda", "a function without a name is written `p => …`"},
+        {"t", "the seconds are `time`"},
+        {"save", "a mesh is written by `fathom mesh scene.sdf -o scene.stl`"},
+        {"export", "a mesh is written by `fathom mesh scene.sdf -o scene.stl`"},
+        {"require", "the library needs no import; a file is brought in by `import \"file.sdf\"`"},
         {"morph", "one shape turns into another by `blend(a, b, t)`"},
         {"sdf", "the library's names stand alone, as in `sphere(1)`"},
         {"k", "shapes flow together in `smooth_union(k) { … }`"},
@@ -133,6 +147,28 @@ std::string_view way_from_elsewhere(std::string_view name) {
         {"rotate_x", "write `.rotate(angle, axis: X)`"},
         {"rotate_y", "write `.rotate(angle, axis: Y)`"},
         {"rotate_z", "write `.rotate(angle, axis: Z)`"}};
+    const auto it = ways.find(name);
+    return it == ways.end() ? std::string_view() : it->second;
+}
+
+std::string_view way_of_type(std::string_view name) {
+    static const std::unordered_map<std::string_view, std::string_view> ways = {
+        {"list", "a list says what it holds: `[float]`, `[shape]`"},
+        {"List", "a list says what it holds: `[float]`, `[shape]`"},
+        {"array", "a list says what it holds: `[float]`, `[shape]`"},
+        {"Array", "a list says what it holds: `[float]`, `[shape]`"},
+        {"tuple", "a list says what it holds: `[float]`, `[shape]`"},
+        {"vec", "a vector says how many numbers it has: `vec2`, `vec3`, `vec4`"},
+        {"Vec", "a vector says how many numbers it has: `vec2`, `vec3`, `vec4`"},
+        {"vector", "a vector says how many numbers it has: `vec2`, `vec3`, `vec4`"},
+        {"Vector", "a vector says how many numbers it has: `vec2`, `vec3`, `vec4`"},
+        {"function", "a function says what it takes and gives: `(vec3) -> float`"},
+        {"Function", "a function says what it takes and gives: `(vec3) -> float`"},
+        {"func", "a function says what it takes and gives: `(vec3) -> float`"},
+        {"Callable", "a function says what it takes and gives: `(vec3) -> float`"},
+        {"any", "what may be of any type has none: leave it away"},
+        {"object", "what may be of any type has none: leave it away"},
+        {"void", "a function without a result has no `->`"}};
     const auto it = ways.find(name);
     return it == ways.end() ? std::string_view() : it->second;
 }

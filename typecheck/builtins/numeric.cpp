@@ -3,6 +3,7 @@
 #include "base/srgb.h"
 #include "typecheck/binding.h"
 #include "typecheck/interpreter.h"
+#include "typecheck/remedies.h"
 
 #include "ir/maps.h"
 

@@ -116,6 +116,7 @@ TEST_CASE("near names are those within a third of the word") {
     CHECK(nearest_name("sm", names).empty());             // two letters begin too many
     CHECK(nearest_name("y", names) == "Y");
     CHECK(nearest_name("z", names).empty());
+    CHECK(nearest_name("i", {"pi"}).empty()); // a letter is no part of a word
     CHECK(nearest_name("cube", names).empty());
     CHECK(nearest_name("", names).empty());
     CHECK(nearest_name(std::string(1000000, 'a'), {std::string(1000000, 'b')}).empty());

@@ -1,0 +1,291 @@
+// Functions without a name as other languages write them, read as ours: `function(p) { … }`,
+// `lambda x, y: …`, `fun x -> …`, `\x -> …`, `|x| …`, `[](float x) { … }`. The words are put right
+// before layout, so that all behind them is read and only the one mistake is told.
+#include "lang/token.h"
+
+#include <array>
+#include <optional>
+#include <unordered_set>
+
+namespace fathom::lang {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> lambda_words = {"function", "func", "fun"};
+
+bool is_operand_place(Tok before) {
+    return is_one_of(before, {Tok::Assign, Tok::Open, Tok::ListOpen, Tok::Comma, Tok::Return,
+                              Tok::FatArrow, Tok::Colon});
+}
+
+bool begins_body(Tok kind) {
+    return is_one_of(kind, {Tok::Name, Tok::Number, Tok::String, Tok::Color, Tok::True, Tok::False,
+                            Tok::If, Tok::Not});
+}
+
+class Lambdas {
+  public:
+    Lambdas(const Source &source, SourceId id, const std::vector<Token> &words,
+            Diagnostics &diagnostics)
+        : source_(source), id_(id), words_(words), diagnostics_(diagnostics) {}
+
+    // Empty where there are none.
+    std::vector<Token> run() {
+        for (std::size_t i = 0; i < words_.size(); ++i) {
+            const bool found =
+                by_word(i) || by_backslash(i) || by_bars(i) || by_arrow(i) || by_captures(i);
+            if (!found && changed_) out_.push_back(words_[i]);
+        }
+        return std::move(out_);
+    }
+
+  private:
+    Tok kind(std::size_t i) const { return i < words_.size() ? words_[i].kind : Tok::End; }
+    Tok before(std::size_t i) const { return i > 0 ? words_[i - 1].kind : Tok::End; }
+    std::string_view text(std::size_t i) const { return text_of(source_, words_[i]); }
+    std::string text(std::uint32_t begin, std::uint32_t end) const {
+        return source_.text.substr(begin, end - begin);
+    }
+    Span span(std::uint32_t begin, std::uint32_t end) const { return {id_, begin, end}; }
+
+    // The bracket that closes the one at `i`, of those of its kind; 0 where there is none.
+    std::size_t close_of(std::size_t i) const {
+        const Tok open = kind(i), close = open == Tok::Open ? Tok::Close : Tok::ListClose;
+        int depth = 0;
+        constexpr std::size_t longest_head = 400; // words
+        for (std::size_t k = i; k < words_.size() && k < i + longest_head; ++k) {
+            if (kind(k) == open) ++depth;
+            if (kind(k) == close && --depth == 0) return k;
+            if (is_one_of(kind(k), {Tok::Body, Tok::BraceClose, Tok::End})) return 0;
+        }
+        return 0;
+    }
+
+    // Whether the file has such a name of its own, or may bring one by an import.
+    bool may_be_declared(std::string_view name) {
+        if (!declared_) {
+            declared_.emplace();
+            for (std::size_t i = 0; i + 1 < words_.size(); ++i) {
+                imports_ = imports_ || kind(i) == Tok::Import;
+                if (is_one_of(kind(i), {Tok::Let, Tok::Var, Tok::Fn, Tok::Param}) &&
+                    kind(i + 1) == Tok::Name)
+                    declared_->insert(text(i + 1));
+            }
+        }
+        return imports_ || declared_->contains(name);
+    }
+
+    void begin_change(std::size_t i) {
+        if (!changed_) out_.assign(words_.begin(), words_.begin() + std::ptrdiff_t(i));
+        changed_ = true;
+    }
+    void put(Tok kind, std::uint32_t begin, std::uint32_t end, bool first_on_line = false) {
+        out_.push_back({kind, first_on_line, begin, end});
+    }
+
+    // `head` is what is written here for [begin, end); the words of `parameters` stay as they are.
+    void say(std::uint32_t begin, std::uint32_t end, const std::string &head, Span at) {
+        diagnostics_.add(Code::ForeignSyntax, at, "a function without a name is written `p => …`")
+            .help("write `" + head + " …`", {{span(begin, end), head}});
+    }
+
+    // Parameters in parentheses, which stay: what stands before them goes, `=>` comes behind.
+    // `past` is the word at which the body begins.
+    void in_parentheses(std::size_t first, std::size_t open, std::size_t close, std::size_t past,
+                        std::size_t &i) {
+        begin_change(first);
+        const std::uint32_t end = words_[close].end;
+        const std::string head = text(words_[open].begin, end) + " =>";
+        const bool arrow = past > close + 1; // one of theirs is replaced
+        const std::uint32_t until = arrow ? words_[past - 1].end : end;
+        say(words_[first].begin, until, head, span(words_[first].begin, words_[open - 1].end));
+        for (std::size_t k = open; k <= close; ++k) out_.push_back(words_[k]);
+        out_[out_.size() - (close - open + 1)].first_on_line = words_[first].first_on_line;
+        put(Tok::FatArrow, until, until);
+        i = past - 1;
+    }
+
+    // Names in a row, from `first` to before `past`: `x`, or `(x, y)`.
+    void in_a_row(std::size_t head, std::size_t first, std::size_t past, Span sign, std::size_t &i,
+                  std::size_t next) {
+        begin_change(head);
+        std::vector<std::size_t> names;
+        for (std::size_t k = first; k < past; ++k)
+            if (kind(k) == Tok::Name) names.push_back(k);
+        const bool fresh = words_[head].first_on_line;
+        const std::uint32_t begin = words_[head].begin;
+        std::string written;
+        if (names.size() == 1) {
+            written = text(names[0]);
+            put(Tok::Name, words_[names[0]].begin, words_[names[0]].end, fresh);
+        } else {
+            put(Tok::Open, begin, begin, fresh);
+            for (const std::size_t k : names) {
+                if (k != names[0]) put(Tok::Comma, words_[k].begin, words_[k].begin);
+                put(Tok::Name, words_[k].begin, words_[k].end);
+                written += (k == names[0] ? "(" : ", ") + std::string(text(k));
+            }
+            written += ")";
+            const std::uint32_t end = words_[past - 1].end;
+            put(Tok::Close, end, end);
+        }
+        const std::uint32_t end = words_[next - 1].end;
+        put(Tok::FatArrow, end, end);
+        say(begin, end, written + " =>", sign);
+        i = next - 1;
+    }
+
+    // `function(p) { … }`, `function(x) x * x`, `fn(p) => …`; `lambda x, y: …`; `fun x y -> …`.
+    bool by_word(std::size_t &i) {
+        const bool ours = kind(i) == Tok::Fn;
+        if (!ours && kind(i) != Tok::Name) return false;
+        if (!is_operand_place(before(i))) return false;
+        const std::string_view word = text(i);
+        const Span at = span(words_[i].begin, words_[i].end);
+        if (word == "lambda" && kind(i + 1) == Tok::Colon && before(i) == Tok::Assign) {
+            begin_change(i);
+            const std::uint32_t end = words_[i + 1].end;
+            put(Tok::Open, at.begin, at.begin, words_[i].first_on_line);
+            put(Tok::Close, at.begin, at.begin);
+            put(Tok::FatArrow, end, end);
+            say(at.begin, end, "() =>", at);
+            ++i;
+            return true;
+        }
+        if (word == "lambda" && kind(i + 1) == Tok::Name) {
+            std::size_t k = i + 2;
+            while (kind(k) == Tok::Comma && kind(k + 1) == Tok::Name) k += 2;
+            if (kind(k) != Tok::Colon) return false;
+            in_a_row(i, i + 1, k, at, i, k + 1);
+            return true;
+        }
+        if (!ours &&
+            std::find(lambda_words.begin(), lambda_words.end(), word) == lambda_words.end())
+            return false;
+        if (kind(i + 1) == Tok::Name) {
+            std::size_t k = i + 2;
+            while (kind(k) == Tok::Name) ++k;
+            if (kind(k) != Tok::Arrow && kind(k) != Tok::FatArrow) return false;
+            in_a_row(i, i + 1, k, at, i, k + 1);
+            return true;
+        }
+        if (kind(i + 1) != Tok::Open) return false;
+        const std::size_t close = close_of(i + 1);
+        if (close == 0) return false;
+        const Tok body = kind(close + 1);
+        const bool sign =
+            body == Tok::FatArrow || body == Tok::Arrow || (ours && body == Tok::Assign);
+        if (!sign && body != Tok::Body && !begins_body(body)) return false;
+        if (!ours && may_be_declared(word)) return false;
+        in_parentheses(i, i + 1, close, close + (sign ? 2 : 1), i);
+        return true;
+    }
+
+    // `\x -> …`, `\x y -> …`: the lexer has reported the sign.
+    bool by_backslash(std::size_t &i) {
+        if (kind(i) != Tok::Bad || text(i)[0] != '\\') return false;
+        std::size_t k = i + 1;
+        while (kind(k) == Tok::Name) ++k;
+        if (kind(k) != Tok::Arrow && kind(k) != Tok::FatArrow) return false;
+        const std::uint32_t begin = words_[i].begin, name_end = words_[i].end;
+        if (name_end == begin + 1 && k == i + 1) return false;
+        diagnostics_.withdraw(Code::BadCharacter, span(begin, name_end));
+        begin_change(i);
+        std::vector<Span> names;
+        if (name_end > begin + 1) names.push_back(span(begin + 1, name_end));
+        for (std::size_t n = i + 1; n < k; ++n)
+            names.push_back(span(words_[n].begin, words_[n].end));
+        const bool row = names.size() > 1;
+        std::string written = row ? "(" : "";
+        if (row) put(Tok::Open, begin, begin, words_[i].first_on_line);
+        for (const Span &name : names) {
+            if (written.size() > 1) {
+                put(Tok::Comma, name.begin, name.begin);
+                written += ", ";
+            }
+            put(Tok::Name, name.begin, name.end, !row && words_[i].first_on_line);
+            written += text(name.begin, name.end);
+        }
+        const std::uint32_t past = names.back().end, end = words_[k].end;
+        if (row) put(Tok::Close, past, past), written += ")";
+        put(Tok::FatArrow, end, end);
+        say(begin, end, written + " =>", span(begin, name_end));
+        i = k;
+        return true;
+    }
+
+    // `|x, y| …`, where no operator can stand.
+    bool by_bars(std::size_t &i) {
+        if (kind(i) != Tok::Bar || !is_operand_place(before(i)) || words_[i].first_on_line)
+            return false;
+        std::size_t k = i + 1;
+        while (kind(k) == Tok::Name) {
+            ++k;
+            if (kind(k) == Tok::Colon && kind(k + 1) == Tok::Name) k += 2;
+            if (kind(k) != Tok::Comma) break;
+            ++k;
+        }
+        if (kind(k) != Tok::Bar || k == i + 1) return false;
+        begin_change(i);
+        const std::uint32_t begin = words_[i].begin, end = words_[k].end;
+        const std::string inside = text(words_[i].end, words_[k].begin);
+        const bool one = k == i + 2;
+        put(Tok::Open, begin, begin);
+        for (std::size_t n = i + 1; n < k; ++n) out_.push_back(words_[n]);
+        put(Tok::Close, end, end);
+        put(Tok::FatArrow, end, end);
+        say(begin, end, (one ? inside : "(" + inside + ")") + " =>", span(begin, end));
+        i = k;
+        return true;
+    }
+
+    // `x -> …`. Where nothing parts the three, it may be a part of `x`.
+    bool by_arrow(std::size_t &i) {
+        if (kind(i) != Tok::Name || kind(i + 1) != Tok::Arrow || before(i) == Tok::Colon ||
+            !is_operand_place(before(i)) || words_[i].end == words_[i + 1].begin)
+            return false;
+        begin_change(i);
+        const Token &arrow = words_[i + 1];
+        out_.push_back(words_[i]);
+        put(Tok::FatArrow, arrow.end, arrow.end);
+        diagnostics_
+            .add(Code::ForeignSyntax, span(arrow.begin, arrow.end),
+                 "a function without a name is written with `=>`")
+            .help("write `=>`", {{span(arrow.begin, arrow.end), "=>"}});
+        ++i;
+        return true;
+    }
+
+    // C++'s `[](float x) { … }`, `[&](…) -> float { … }`.
+    bool by_captures(std::size_t &i) {
+        if (kind(i) != Tok::ListOpen || !is_operand_place(before(i))) return false;
+        const bool sign = kind(i + 1) == Tok::Amp || kind(i + 1) == Tok::Assign;
+        const std::size_t open = i + (sign ? 3 : 2);
+        if (kind(open - 1) != Tok::ListClose || kind(open) != Tok::Open) return false;
+        const std::size_t close = close_of(open);
+        if (close == 0) return false;
+        std::size_t past = close + 1;
+        if (kind(past) == Tok::Arrow && kind(past + 1) == Tok::Name) past += 2;
+        if (kind(past) != Tok::Body) return false;
+        in_parentheses(i, open, close, past, i);
+        return true;
+    }
+
+    const Source &source_;
+    SourceId id_;
+    const std::vector<Token> &words_;
+    Diagnostics &diagnostics_;
+    std::vector<Token> out_;
+    bool changed_ = false;
+    std::optional<std::unordered_set<std::string_view>> declared_; // made when first needed
+    bool imports_ = false;
+};
+
+} // namespace
+
+std::vector<Token> read_foreign_lambdas(const Source &source, SourceId id,
+                                        const std::vector<Token> &words, Diagnostics &diagnostics) {
+    return Lambdas(source, id, words, diagnostics).run();
+}
+
+} // namespace fathom::lang

@@ -1,0 +1,207 @@
+// What is said of a name that nobody declared: the one that is likely to be meant, of the kind that
+// is wanted there, or how such a thing is declared or done here.
+#include "typecheck/remedies.h"
+
+#include "base/suggest.h"
+#include "base/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace fathom::typecheck {
+
+bool may_compare_names(Interpreter &ev, std::size_t count) {
+    constexpr std::size_t most_compared = 3'000'000; // names, over all that nobody declared
+    ev.names_compared += count;
+    return ev.names_compared <= most_compared;
+}
+
+namespace {
+
+// Whether a function may be called as `object.f(…)`.
+bool takes(Interpreter &ev, const Value &f, const Value &object) {
+    if (f.kind == ValueKind::Overloads) {
+        const std::vector<Value> forms = ev.lists[f.id];
+        return std::ranges::any_of(forms,
+                                   [&](const Value &form) { return takes(ev, form, object); });
+    }
+    if (f.kind != ValueKind::Closure) return true;
+    const Closure c = ev.closures[f.id];
+    const auto &parameters = c.ast->functions[c.function].parameters;
+    return !parameters.empty() && (!parameters[0].type || accepts(ev, object, *parameters[0].type));
+}
+
+// Whether a name is one of the kind that is wanted. A function is seldom wanted as a value, and so
+// only where little is mistyped.
+bool fits(Interpreter &ev, std::uint32_t frame, const std::string &name,
+          const std::string &candidate, const Wanted &wanted) {
+    const auto v = look_up(ev, frame, intern(ev, candidate));
+    if (!v) return false;
+    if (is_poison(*v)) return true;
+    if (wanted.use == Use::Called)
+        return is_function(*v) &&
+               (!wanted.object || is_poison(*wanted.object) || takes(ev, *v, *wanted.object));
+    constexpr std::size_t long_enough = 5;
+    return !is_function(*v) || (name.size() >= long_enough && edit_distance(name, candidate) <= 1);
+}
+
+// The nearest of those that fit.
+std::string nearest_fitting(Interpreter &ev, std::uint32_t frame, const std::string &name,
+                            std::string_view word, std::vector<std::string> &names,
+                            const Wanted &wanted) {
+    constexpr int most_tries = 10;
+    constexpr std::size_t short_word = 4;
+    for (int i = 0; i < most_tries; ++i) {
+        std::string near = nearest_name(word, names);
+        // of short words the beginning says more: `rot` is no `dot`
+        if (!near.empty() && word.size() <= short_word && edit_distance(near, word) > 0 &&
+            near[0] != word[0])
+            if (const std::string begun = shortest_begun_by(word, names);
+                !begun.empty() && word.size() > 2)
+                near = begun;
+        // of what is further off, the first letter at least is right
+        const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
+        const bool far =
+            !near.empty() && small(near[0]) != small(word[0]) && edit_distance(near, word) > 1;
+        if (near.empty() || (!far && fits(ev, frame, name, near, wanted))) return near;
+        std::erase(names, near);
+    }
+    return {};
+}
+
+} // namespace
+
+std::string likely_name(Interpreter &ev, std::uint32_t frame, const std::string &name,
+                        const Wanted &wanted) {
+    if (const std::string known(name_from_elsewhere(name));
+        !known.empty() && fits(ev, frame, known, known, wanted) &&
+        (wanted.use == Use::Called || !is_function(*look_up(ev, frame, intern(ev, known)))))
+        return known;
+    if (!way_from_elsewhere(name).empty()) return {};
+    if (!may_compare_names(ev, ev.symbol_names.size())) return {};
+    std::vector<std::string> names = visible_names(ev, frame);
+    // `sdBox`, `opUnion`, `sdf_sphere`: a library of shader code has its prefixes
+    for (const std::string_view prefix : {"sdf_", "sd_", "op_", "sdf", "sd", "op"}) {
+        if (!name.starts_with(prefix) || name.size() < prefix.size() + 3) continue;
+        const std::string rest = name.substr(prefix.size());
+        if (const auto ours = name_from_elsewhere(rest); !ours.empty()) return std::string(ours);
+        const std::string near = nearest_fitting(ev, frame, rest, rest, names, wanted);
+        if (!near.empty() && edit_distance(near, rest) <= 1) return near;
+    }
+    return nearest_fitting(ev, frame, name, name, names, wanted);
+}
+
+// Another use of a name that was told: its edit goes with the first. True where there was one.
+static bool told_before(Interpreter &ev, const std::string &name, Span place) {
+    constexpr std::size_t most_edits = 20, most_names = 1000;
+    if (ev.unknown_names.size() > most_names) return false;
+    const auto [it, fresh] = ev.unknown_names.try_emplace({place.source.index, name}, place);
+    if (fresh || it->second == place) return false;
+    Diagnostic *first = ev.diagnostics.find(Code::UnknownName, it->second);
+    if (!first) return false;
+    if (first->fix && !first->fix->edits.empty() && first->fix->edits[0].span == it->second &&
+        first->fix->edits.size() < most_edits) {
+        const std::string ours = first->fix->edits[0].replacement;
+        const auto same = [&](const Edit &e) { return e.span == place; };
+        if (std::ranges::none_of(first->fix->edits, same))
+            first->fix->edits.push_back({place, ours});
+    }
+    return true;
+}
+
+bool type_told_before(Interpreter &ev, const std::string &name, Span place) {
+    return told_before(ev, ":" + name, place);
+}
+
+bool lacking(const Interpreter &ev, const std::string &name, const std::string &near) {
+    return ev.modules[ev.current_module].lacks_names && (near.empty() || name.size() < 5);
+}
+
+// `45*deg`, `5 * mm`: the unit touches its number, and lengths have none.
+static std::vector<Edit> unit_edit(const Interpreter &ev, const std::string &name, Span place) {
+    const bool length = name == "mm" || name == "cm";
+    if (name != "deg" && !length) return {};
+    const std::string_view before = text(ev.sources, {place.source, 0, place.begin});
+    const std::size_t sign = before.find_last_not_of(" \t");
+    if (sign == before.npos || before[sign] != '*' || sign == 0) return {};
+    const std::size_t last = before.find_last_not_of(" \t", sign - 1);
+    if (last == before.npos || (!length && (before[last] < '0' || before[last] > '9'))) return {};
+    const auto end = static_cast<std::uint32_t>(last + 1);
+    return {{{place.source, end, length ? place.end : place.begin}, ""}};
+}
+
+// Whether `x` stands alone as an argument, where an axis may be meant.
+static bool is_whole_argument(const Interpreter &ev, Span place) {
+    const std::string_view all = ev.sources[place.source].text;
+    const std::size_t before = place.begin == 0 ? all.npos
+                                                : all.find_last_not_of(" \t\n", place.begin - 1),
+                      behind = all.find_first_not_of(" \t\n", place.end);
+    return before != all.npos && behind != all.npos &&
+           std::string_view("(,:").find(all[before]) != std::string_view::npos &&
+           std::string_view("),").find(all[behind]) != std::string_view::npos;
+}
+
+// Where the file binds the name at its top, further down.
+static std::optional<Span> bound_below(const Wanted &wanted, const std::string &name, Span place) {
+    if (!wanted.ast) return std::nullopt;
+    const auto &stmts = wanted.ast->blocks[wanted.ast->root].stmts;
+    constexpr std::size_t most_statements = 10'000;
+    for (std::size_t i = 0; i < std::min(stmts.size(), most_statements); ++i) {
+        const lang::StmtKind &kind = stmts[i].kind;
+        const lang::Identifier *bound = nullptr;
+        if (auto *l = std::get_if<lang::Let>(&kind)) bound = &l->name;
+        if (auto *p = std::get_if<lang::Param>(&kind)) bound = &p->name;
+        if (bound && bound->text == name && bound->span.begin > place.begin) return bound->span;
+    }
+    return std::nullopt;
+}
+
+void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place,
+                         const Wanted &wanted) {
+    std::string near = likely_name(ev, frame, name, wanted);
+    if (name.size() == 1 && place.source && !is_whole_argument(ev, place)) near.clear();
+    if (lacking(ev, name, near)) return; // one cause, one report
+    const bool of_user = ev.quiet == 0 && !is_library_place(ev, place);
+    if (of_user && told_before(ev, name, place)) return;
+    Diagnostic &d = report(ev, Code::UnknownName, place,
+                           fmt::format("nothing here is called `{}`", short_name(name)));
+    if (const auto below = bound_below(wanted, name, place)) {
+        d.label(*below, "bound here").help("a name is known below the place where it is bound");
+        return;
+    }
+    if (ev.in_field == 0 && (name == "p" || name == "pos" || name == "uv")) {
+        d.help("the point is the argument of a function: `implicit(p => length(p) - 1)`");
+        return;
+    }
+    const std::string_view way = way_from_elsewhere(name);
+    if (!way.empty()) d.help(std::string(way), unit_edit(ev, name, place));
+    if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{place, near}});
+    if (name == "cube" || name == "square")
+        d.note(fmt::format("a `{}` has its middle at the origin", near));
+    if (d.fix) return;
+    if (wanted.use == Use::Called)
+        d.help(fmt::format("a function is declared before it is called: `fn {}(x) = …`",
+                           short_name(name)));
+    else
+        d.help(fmt::format("a name is bound before it is used: `let {} = …`", short_name(name)));
+}
+
+// -- signs ---------------------------------------------------------------------------------------
+
+// One sign between two operands for another, where nothing that binds tighter follows.
+std::vector<Edit> sign_edit(const Interpreter &ev, Span a, Span b, char sign,
+                            std::string_view ours) {
+    if (ours.empty() || is_library_place(ev, a) || a.source != b.source || b.begin < a.end)
+        return {};
+    const std::string_view between = text(ev.sources, {a.source, a.end, b.begin});
+    const std::string_view all = ev.sources[a.source].text;
+    const std::size_t next = all.find_first_not_of(" \t", b.end), at = between.find(sign);
+    if (at == between.npos || between.find(sign, at + 1) != between.npos ||
+        (next != all.npos && std::string_view("-&*.").find(all[next]) != std::string_view::npos))
+        return {};
+    const auto place = static_cast<std::uint32_t>(a.end + at);
+    return {{{a.source, place, place + 1}, std::string(ours)}};
+}
+
+} // namespace fathom::typecheck
