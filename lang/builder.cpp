@@ -404,6 +404,12 @@ void Builder::step(Index at) {
             .help("lists are joined by `concat(a, b)`");
         return push(Poison{}, {id_, item.begin, token(at).end}, 1);
     }
+    if (!in_function_ && enclosing(at) == 0) {
+        foreign(span(at), up ? "there is no `++`" : "there is no `--`")
+            .help("a scene's names keep their value: give the new one a name of its own, `let " +
+                  name + "2 = " + name + (up ? " + 1`" : " - 1`"));
+        return push(Poison{}, {id_, item.begin, token(at).end}, 1);
+    }
     foreign(span(at), up ? "there is no `++`" : "there is no `--`")
         .help("write `" + name + (up ? " += 1`" : " -= 1`"), {{span(at), up ? " += 1" : " -= 1"}});
     push(Poison{}, {id_, item.begin, token(at).end}, 1);

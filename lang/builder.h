@@ -266,6 +266,7 @@ class Builder {
     void foreign_param(Index first, Index name);
     bool foreign_stream(Index first, Index name);
     void foreign_unbound(Index first, Index name, std::string_view type);
+    bool range_of_param(Index comma);
     void foreign_name_parts(Index left, Index right);
     bool is_used_after(Index name) const;
     void foreign_curried(Index first, Index name, Index past);

@@ -268,7 +268,10 @@ void Builder::assignment() {
         Diagnostic &d =
             diagnostics_.add(Code::NotAssignable, span(target), "this cannot be assigned to");
         d.note("a target is a `var`, or a component of one");
-        if (kind(at) == Tok::Assign) d.help("a comparison is written `==`", {{span(at), "=="}});
+        if (std::holds_alternative<Member>(ast_.exprs[target.id].kind))
+            d.help("nothing that is made changes: give the call other arguments");
+        else if (kind(at) == Tok::Assign)
+            d.help("a comparison is written `==`", {{span(at), "=="}});
         add_stmt(Bad{}, whole, 1);
         return;
     }

@@ -178,9 +178,19 @@ bool Builder::foreign_loop(Index at) {
     }
     const Index test = end_value + 1, end_test = find(test, close, Tok::End);
     const bool below = kind(test + 1) == Tok::Less, upto = kind(test + 1) == Tok::LessEqual;
-    if (end_test == close || text(test) != name || (!below && !upto)) return true;
+    const bool above = kind(test + 1) == Tok::Greater, downto = kind(test + 1) == Tok::GreaterEqual;
+    if (end_test == close || text(test) != name || (!below && !upto && !above && !downto))
+        return true;
     const std::string from = inside(value, end_value), to = inside(test + 2, end_test);
     const Index count = end_test + 1;
+    if (above || downto) { // `i > 0; i--`
+        const bool one = kind(count) == Tok::MinusMinus || kind(count + 1) == Tok::MinusMinus;
+        if (!one && kind(count + 1) != Tok::MinusAssign) return true;
+        const std::string down = "-" + (one ? std::string("1") : inside(count + 2, close));
+        return propose(name + " in " +
+                       (above ? "range(" + from + ", " + to + ", " + down + ")"
+                              : range_up_to(from, to, down)));
+    }
     const bool by_one = kind(count) == Tok::PlusPlus || kind(count + 1) == Tok::PlusPlus;
     if (by_one) return propose(name + " in " + from + (below ? ".." : "..=") + to);
     if (kind(count + 1) != Tok::PlusAssign) return true;
@@ -335,6 +345,17 @@ bool Builder::junk_by_sign(Index first, Index at) {
         foreign(span(first, at), "a function with a name is declared with `fn`")
             .help("write `fn " + std::string(text(token(first).begin, token(at - 1).end)) + " = …`",
                   {{{id_, token(first).begin, token(first).begin}, "fn "}, {span(at), "="}});
+        return true;
+    }
+    if (found == Tok::Assign && kind(first) == Tok::Let && at == first + 4 &&
+        kind(at - 1) == Tok::Name) { // `let a = b = 1`
+        const Index end = statement_end(first);
+        const std::string a(text(first + 1)), b(text(at - 1)),
+            value(text(token(at).end, token(end - 1).end));
+        lost_.push_back(at - 1);
+        foreign(span(first, at), "each name is bound by a `let` of its own")
+            .help("write " + in_code("let " + b + " =" + value + "; let " + a + " = " + b),
+                  {{span(first, end - 1), "let " + b + " =" + value + "; let " + a + " = " + b}});
         return true;
     }
     if (found == Tok::Number && kind(first) == Tok::Param && kind(first + 2) == Tok::Assign) {

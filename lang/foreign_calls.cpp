@@ -116,6 +116,20 @@ bool Builder::separated_unit(Index at) {
         return true;
     }
     const bool degrees = is_degree_word(unit);
+    const bool radians = unit == "rad" || unit == "radians";
+    if (radians || (unit == "turns" && at > 1)) {
+        const bool turns = unit == "turns";
+        Diagnostic &d =
+            diagnostics_.add(Code::BadNumber, span(at - 1, at),
+                             turns ? "the unit of turns is `turn`, and touches its number"
+                                   : "an angle is in radians as it is");
+        if (turns)
+            d.help("write `turn`", {{{id_, token(at - 1).end, token(at).end}, "turn"}});
+        else
+            d.help("leave " + in_code(unit) + " away",
+                   {{{id_, token(at - 1).end, token(at).end}, ""}});
+        return true;
+    }
     if (!degrees && unit != "deg" && unit != "rad" && unit != "turn") return false;
     const std::string angle = std::string(text(at - 1)) + (degrees ? "deg" : std::string(unit));
     diagnostics_.add(Code::BadNumber, span(at - 1, at), "a unit touches its number")
@@ -148,12 +162,22 @@ bool Builder::foreign_import(Index at) {
     if (kind(at) != Tok::Name && kind(at) != Tok::Dot && kind(at) != Tok::DotDot) return false;
     Index end = at;
     while (!ends_statement(end) && kind(end) != Tok::As && text(end) != "as") ++end;
-    if (kind(end - 1) != Tok::Name) return false;
+    if (kind(end - 1) != Tok::Name && kind(end - 1) != Tok::String) return false;
     const std::string written(text(token(at).begin, token(end - 1).end));
     if (is_foreign_module(written)) {
         failed_ = end;
         foreign(span(at), "the mathematical functions need no module")
             .help("leave the line away",
+                  {{{id_, token(at - 1).begin, token(statement_end(at) - 1).end}, ""}});
+        return true;
+    }
+    Index from = at; // `import sphere from "shapes"`
+    while (!ends_statement(from) && text(from) != "from") ++from;
+    if (kind(from) == Tok::Name && kind(from + 1) == Tok::String) {
+        failed_ = from;
+        foreign(span(at - 1, from),
+                "`import` brings all names of a file, and the library needs none")
+            .help("leave the line away, or write `import \"file.sdf\"`",
                   {{{id_, token(at - 1).begin, token(statement_end(at) - 1).end}, ""}});
         return true;
     }
@@ -182,8 +206,16 @@ std::string Builder::lisp_value(Index &at) const {
     if (found == Tok::Minus && kind(at + 1) == Tok::Number && joined)
         return "-" + std::string(text((at += 2) - 1));
     if (found == Tok::Name && kind(at + 1) == Tok::Minus && joined) return {}; // `box-exact`
-    if (is_one_of(found, {Tok::Number, Tok::Name, Tok::String, Tok::Color, Tok::True, Tok::False}))
-        return std::string(text(at++));
+    if (is_one_of(found,
+                  {Tok::Number, Tok::Name, Tok::String, Tok::Color, Tok::True, Tok::False})) {
+        std::string value(text(at++));
+        while (is_one_of(kind(at), {Tok::Slash, Tok::Star}) && touch(at - 1, at) &&
+               touch(at, at + 1) && is_one_of(kind(at + 1), {Tok::Number, Tok::Name})) {
+            value += " " + std::string(text(at)) + " " + std::string(text(at + 1)); // `tau/4`
+            at += 2;
+        }
+        return value;
+    }
     if (found == Tok::Open || found == Tok::FreshOpen) {
         const Index open = std::exchange(at, match(at) + 1);
         return lisp_form(open);
@@ -223,7 +255,8 @@ std::string Builder::lisp_part(Index at, Index end) const {
     std::string arguments, axis;
     for (Index i = at + 1; i < end;) {
         const std::string_view word = text(i);
-        const bool names_axis = word == "x" || word == "y" || word == "z";
+        const bool alone = i == at + 1 && i + 1 == end && kind(at - 1) != Tok::Bar; // `(sphere x)`
+        const bool names_axis = !alone && (word == "x" || word == "y" || word == "z");
         std::string value = lisp_value(i);
         if (value.empty()) return {};
         if (names_axis && moves && i < end) {
@@ -243,6 +276,10 @@ std::string Builder::lisp_part(Index at, Index end) const {
 // What stands in parentheses, with Bauble's pipe: `(box 1 | move x 2)`.
 std::string Builder::lisp_form(Index open) const {
     const Index close = match(open);
+    const bool infix = is_one_of(kind(open + 1), {Tok::Number, Tok::Name}) &&
+                       is_one_of(kind(open + 2), {Tok::Slash, Tok::Star, Tok::Plus}) &&
+                       token(open + 2).end < token(open + 3).begin;
+    if (infix) return std::string(text(token(open).begin, token(close).end)); // `(tau / 8)`
     std::string out;
     for (Index first = open + 1, i = first; i <= close; ++i) {
         if (match(i) > i && i < close) i = match(i);
@@ -262,13 +299,16 @@ bool Builder::lisp_binding(Index open) {
     const Index define = open + 1, close = match(open);
     if (!is_one_of(text(define), std::array<std::string_view, 4>{"define", "def", "defn", "var"}))
         return false;
-    const bool function = kind(define + 1) == Tok::Open;
-    const Index name = define + (function ? 2 : 1);
+    const bool janet = kind(define + 1) == Tok::Name && kind(define + 2) == Tok::ListOpen &&
+                       text(define) == "defn"; // `(defn f [x] …)`
+    const bool function = janet || kind(define + 1) == Tok::Open;
+    const Index name = define + (function && !janet ? 2 : 1);
     if (kind(name) != Tok::Name) return false;
     std::string head(text(name));
     Index at = name + 1;
     if (function) {
-        const Index end = match(define + 1);
+        if (janet) ++at;
+        const Index end = match(janet ? define + 2 : define + 1);
         std::string parameters;
         for (; at < end; ++at)
             parameters += (parameters.empty() ? "" : ", ") + std::string(text(at));

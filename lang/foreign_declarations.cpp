@@ -126,6 +126,20 @@ void Builder::foreign_param(Index first, Index name) {
            ready ? std::move(edits) : std::vector<Edit>{});
 }
 
+// `param r = 1 [0, 2]`, at the comma.
+bool Builder::range_of_param(Index comma) {
+    const Index open = enclosing(comma), close = match(open);
+    Index first = open;
+    while (first > 0 && kind(first - 1) != Tok::End) --first;
+    if (kind(first) != Tok::Param || !ends_statement(close + 1)) return false;
+    const std::string range = std::string(text(token(open).end, token(comma).begin)) + ".." +
+                              std::string(text(token(comma + 1).begin, token(close).begin));
+    foreign(span(open, close), "a param's range stands behind `in`")
+        .help("write " + in_code("in " + range),
+              {{{id_, token(open - 1).end, token(close).end}, " in " + range}});
+    return true;
+}
+
 // `uniform float k;`, `varying vec2 uv;`: without a value.
 bool Builder::foreign_stream(Index first, Index name) {
     const std::string word(text(first)), declared(text(name)), type(text(name - 1));
@@ -377,9 +391,22 @@ bool Builder::foreign_binding(Index at) {
             .help("write `fn`", {{span(at - 2), "fn"}});
         return true;
     }
+    if (found == Tok::ListOpen && kind(at + 1) == Tok::ListClose && kind(before) == Tok::Name &&
+        kind(before - 1) == Tok::Colon) { // `l: float[]`
+        const std::string type = "[" + std::string(text(before)) + "]";
+        foreign(span(before, at + 1), "a list's type stands in brackets")
+            .help("write " + in_code(type), {{span(before, at + 1), type}});
+        return true;
+    }
     if (found == Tok::Minus && before > 0 && kind(at + 1) == Tok::Name && touch(before, at) &&
         touch(at, at + 1)) {
         foreign_name_parts(before, at + 1);
+        return true;
+    }
+    if (is_one_of(found, {Tok::PlusAssign, Tok::MinusAssign, Tok::StarAssign, Tok::SlashAssign})) {
+        foreign(span(at), "a name is bound with `=`")
+            .help("a `var` in a function is changed without `let`: " +
+                  in_code(std::string(text(before)) + " " + std::string(text(at)) + " …"));
         return true;
     }
     const bool binds = kind(before - 1) == Tok::Let || kind(before - 1) == Tok::Var;

@@ -204,6 +204,21 @@ bool Builder::foreign_name(Index at) {
 // Behind the variable of a `for`.
 bool Builder::foreign_in(Index at) {
     const Tok found = kind(at);
+    if (found == Tok::Colon && kind(at + 1) == Tok::Assign) { // Go's
+        const Index name = at - 1, test = at + 4, brace = test + 6;
+        const bool simple = kind(at + 3) == Tok::End && text(test) == text(name) &&
+                            kind(test + 1) == Tok::Less && kind(test + 3) == Tok::End &&
+                            text(test + 4) == text(name) && kind(test + 5) == Tok::PlusPlus;
+        Index end = at;
+        while (end < tokens_.tokens.size() && match(end) == end && !token(end).first_on_line) ++end;
+        failed_ = end;
+        Diagnostic &d = foreign(span(name - 1, at + 1), "a loop is written `for i in 0..8 { … }`");
+        if (!simple) return true;
+        const std::string head = std::string(text(name)) + " in " + std::string(text(at + 2)) +
+                                 ".." + std::string(text(test + 2));
+        d.help("write " + in_code("for " + head + " { … }"), {{span(name, brace - 1), head}});
+        return true;
+    }
     if (found == Tok::Assign)
         return foreign_instead(at, "a loop runs over what stands behind `in`", "in");
     if (found == Tok::Name && text(at) == "of")
@@ -239,6 +254,14 @@ bool Builder::foreign_function_body(Index at) {
             d.help("write `=`", {{span(at), " ="}});
         else
             d.help("write `{ … }`", indented_body(at, edits) ? edits : std::vector<Edit>{});
+        return true;
+    }
+    if (found == Tok::Name && type_named(text(at)) != TypeName::Unknown &&
+        !token(at).first_on_line &&
+        is_one_of(kind(at + 1), {Tok::Body, Tok::Trailing, Tok::Assign})) {
+        const std::uint32_t end = token(at - 1).end;
+        foreign(span(at), "a function's result stands behind `->`")
+            .help("write " + in_code("-> " + std::string(text(at))), {{{id_, end, end}, " ->"}});
         return true;
     }
     if (found == Tok::FatArrow)

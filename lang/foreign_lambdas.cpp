@@ -32,8 +32,8 @@ class Lambdas {
     // Empty where there are none.
     std::vector<Token> run() {
         for (std::size_t i = 0; i < words_.size(); ++i) {
-            const bool found =
-                by_word(i) || by_backslash(i) || by_bars(i) || by_arrow(i) || by_captures(i);
+            const bool found = by_word(i) || by_backslash(i) || by_bars(i) || by_arrow(i) ||
+                               by_list_and_arrow(i) || by_captures(i);
             if (!found && changed_) out_.push_back(words_[i]);
         }
         return std::move(out_);
@@ -236,6 +236,23 @@ class Lambdas {
         put(Tok::FatArrow, end, end);
         say(begin, end, (one ? inside : "(" + inside + ")") + " =>", span(begin, end));
         i = k;
+        return true;
+    }
+
+    // Java's `(x, y) -> …`, where no type can stand.
+    bool by_list_and_arrow(std::size_t &i) {
+        if (kind(i) != Tok::Open || !is_one_of(before(i), {Tok::Assign, Tok::Return})) return false;
+        const std::size_t close = close_of(i);
+        if (close == 0 || kind(close + 1) != Tok::Arrow) return false;
+        begin_change(i);
+        for (std::size_t k = i; k <= close; ++k) out_.push_back(words_[k]);
+        const Token &arrow = words_[close + 1];
+        put(Tok::FatArrow, arrow.end, arrow.end);
+        diagnostics_
+            .add(Code::ForeignSyntax, span(arrow.begin, arrow.end),
+                 "a function without a name is written with `=>`")
+            .help("write `=>`", {{span(arrow.begin, arrow.end), "=>"}});
+        i = close + 1;
         return true;
     }
 

@@ -365,6 +365,19 @@ std::optional<Span> Lexer::assignment_from(std::uint32_t begin, std::uint32_t en
     return span(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
 }
 
+// Greek letters as words, powers and roots as they are written here; empty: none of these.
+static std::string letter_or_sign(std::string_view text) {
+    constexpr std::pair<std::string_view, std::string_view> ours[] = {
+        {"\xCE\xB1", "alpha"},  {"\xCE\xB2", "beta"}, {"\xCE\xB3", "gamma"},
+        {"\xCE\xB4", "delta"},  {"\xCE\xB5", "eps"},  {"\xCE\xB8", "theta"},
+        {"\xCE\xBB", "lambda"}, {"\xCF\x86", "phi"},  {"\xCF\x95", "phi"},
+        {"\xCF\x89", "omega"},  {"\xCF\x84", "tau"},  {"\xCF\x83", "sigma"},
+        {"\xC2\xB2", "^2"},     {"\xC2\xB3", "^3"},   {"\xE2\x88\x9A", "sqrt(x)"}};
+    for (const auto &[theirs, name] : ours)
+        if (theirs == text) return std::string(name);
+    return {};
+}
+
 // What OpenSCAD keeps in names of its own.
 static bool is_special(std::string_view name) {
     constexpr std::array<std::string_view, 9> special = {"fn",  "fa",  "fs",  "t",      "vpr",
@@ -381,6 +394,18 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
         add(Tok::Bad, begin, end);
         report(Code::BadCharacter, begin, end, "names use the letters a to z")
             .help("write `pi`", {{span(begin, end), "pi"}});
+        return;
+    }
+    if (const std::string ours = letter_or_sign(text); !ours.empty()) {
+        const bool letter = ours.find_first_of("^(") == ours.npos;
+        add(letter ? Tok::Name : Tok::Bad, begin, end);
+        Diagnostic &d = report(Code::BadCharacter, begin, end,
+                               letter ? "names use the letters a to z"
+                                      : "this sign is not one of the language's");
+        if (ours.find('(') == ours.npos)
+            d.help("write " + quoted_code(ours), {{span(begin, end), ours}});
+        else
+            d.help("write " + quoted_code(ours));
         return;
     }
     if (text == "\xC2\xA0") { // a no-break space
@@ -425,6 +450,9 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
                       "facets");
         if (const std::optional<Span> all = assignment_from(begin, end))
             d.help("leave it away", {{*all, ""}});
+    } else if (text[0] == '\'') {
+        report(Code::BadCharacter, begin, end, "the language does not use `'`")
+            .help("a string stands in double quotes, a comment begins with `//`");
     } else if (text[0] == '@') {
         report(Code::BadCharacter, begin, end, "the language does not use " + quoted_code(text))
             .help(text == "@param"

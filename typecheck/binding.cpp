@@ -105,6 +105,8 @@ static void report_missing(Interpreter &ev, std::string_view name, std::span<con
     Diagnostic &d = report(ev, Code::MissingArgument, call,
                            fmt::format("`{}` wants an argument `{}`", name, missing.name));
     d.note(fmt::format("it is `{}`", signature_text(name, formals)));
+    if (name == "repeat" && !args.empty() && args.back().trailing)
+        d.help("many are made by a loop: `for i in 0..5 { … }`");
     const auto required = std::ranges::count_if(
         formals, [](const Formal &f) { return !f.optional && !f.takes_rest; });
     if (required == 1 && formals.back().takes_rest && !args.empty() && args.back().trailing)
@@ -138,6 +140,37 @@ static std::string_view only_one_left(std::span<const Formal> formals,
     return unnamed == 1 ? left : std::string_view();
 }
 
+// Where the named arguments are the first ones, in their order: without the names.
+static std::vector<Edit> names_away(std::span<const Formal> formals,
+                                    std::span<const Argument> args) {
+    std::vector<Edit> edits;
+    bool unnamed = false;
+    for (std::size_t i = 0; i < args.size(); ++i) {
+        const Argument &a = args[i];
+        unnamed = unnamed || !a.name;
+        if (!a.name) continue;
+        if (unnamed || i >= formals.size() || formals[i].name != a.name->text) return {};
+        edits.push_back({{a.span.source, a.name->span.begin, a.span.begin}, ""});
+    }
+    return edits;
+}
+
+static void report_order(Interpreter &ev, std::span<const Formal> formals,
+                         std::span<const Argument> args, std::span<const Given> bound,
+                         const Argument &a, Span first_named) {
+    Diagnostic &d = report(ev, Code::ArgumentOrder, a.span,
+                           "an argument without a name stands behind one with a name")
+                        .label(first_named, "named here");
+    const std::string_view left = only_one_left(formals, args, bound);
+    if (const auto edits = names_away(formals, args); left.empty() && !edits.empty())
+        d.help("the arguments stand in their order, and need no names", edits);
+    else if (left.empty())
+        d.help("put it in front, or name it too");
+    else
+        d.help(fmt::format("write `{}: {}`", left, text(ev.sources, a.span)),
+               {{{a.span.source, a.span.begin, a.span.begin}, fmt::format("{}: ", left)}});
+}
+
 std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_view name,
                                                  std::span<const Formal> formals,
                                                  std::span<const Argument> args, Span call,
@@ -149,6 +182,7 @@ std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_vi
     std::vector<Given> bound(formals.size(), nothing);
     bool ok = true;
     std::optional<Span> first_named;
+    bool told_order = false;
     std::size_t next = 0;
     std::vector<Value> rest;
     Span rest_span = callee;
@@ -197,16 +231,9 @@ std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_vi
             give(i, a);
             continue;
         }
+        if (first_named && std::exchange(told_order, true)) continue;
         if (first_named) {
-            Diagnostic &d = report(ev, Code::ArgumentOrder, a.span,
-                                   "an argument without a name stands behind one with a name")
-                                .label(*first_named, "named here");
-            const std::string_view left = only_one_left(formals, args, bound);
-            if (left.empty())
-                d.help("put it in front, or name it too");
-            else
-                d.help(fmt::format("write `{}: {}`", left, text(ev.sources, a.span)),
-                       {{{a.span.source, a.span.begin, a.span.begin}, fmt::format("{}: ", left)}});
+            report_order(ev, formals, args, bound, a, *first_named);
             ok = false;
             continue;
         }

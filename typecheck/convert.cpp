@@ -261,6 +261,16 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
         d.help("`int(x)` cuts the fraction off");
     if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Region)
         d.note("a region is `ball(r)`, `aabb(lo, hi)`, `tube(axis, r)` or `everywhere`");
+    if (type.kind == lang::TypeExpr::Kind::List && v.kind == ValueKind::List &&
+        (type.items[0].named == lang::TypeName::Shape ||
+         type.items[0].named == lang::TypeName::AnyShape)) {
+        const auto &items = ev.lists[v.id];
+        if (std::ranges::any_of(items, [&](const Value &x) { return is_scalar(ev, x); }))
+            d.help("leave the number away; what flows together by it is `smooth_union(0.2, a, b)`");
+        else if (std::ranges::any_of(items,
+                                     [](const Value &x) { return x.kind == ValueKind::List; }))
+            d.help("a list among the shapes is one of them as `union(list)`");
+    }
     if (type.kind == lang::TypeExpr::Kind::List && is_vector_type(type.items[0]))
         d.help("each vector stands in brackets of its own: `[[0, 0], [1, 0], [1, 1]]`");
     if (type.kind == lang::TypeExpr::Kind::Name && is_vector_type(type) && is_function(v))

@@ -391,9 +391,14 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
             return true;
         }
         if (number == args.end()) return false;
+        std::string numbers, others;
+        for (const Argument &a : args) {
+            std::string &list = !a.name && is_scalar(ev, a.value) ? numbers : others;
+            list += (list.empty() ? "" : ", ") + text_of(ev, whole(a));
+        }
         return say(
             fmt::format("`{}` of `{}` stands first, before the shapes", formals[0].name, name),
-            fmt::format("{}({}, {})", name, text_of(ev, number->span), join_others(*number)));
+            fmt::format("{}({}, {})", name, numbers, others));
     }
     return false;
 }

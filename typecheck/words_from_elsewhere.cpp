@@ -95,6 +95,8 @@ std::string_view way_from_elsewhere(std::string_view name) {
         {"cm", "a length has no unit: all of a scene are in the same"},
         {"self", "there are no objects: a function is given what it needs as arguments"},
         {"this", "there are no objects: a function is given what it needs as arguments"},
+        {"uniform",
+         "a random number from 0 to 1 is `random(seed)`, a slider `param r = 1 in 0..2`"},
         {"children", "the shapes that a function is given are a parameter: "
                      "`fn ring(s) { … s … }`"},
         {"function", "a function without a name is written `p => …`"},
