@@ -259,9 +259,10 @@ bool Layout::transform_waits(const Token &t) const {
     if (open == 0 || open + 1 >= close) return false;
     const Token &name = out_.tokens[open - 1];
     const Tok first = out_.tokens[open + 1].kind;
+    const bool method = open > 1 && out_.tokens[open - 2].kind == Tok::Dot; // ours
     const bool theirs = is_one_of(first, {Tok::ListOpen, Tok::Number, Tok::String, Tok::Minus});
-    return name.kind == Tok::Name && theirs && is_foreign_transform(text_of(source_, name)) &&
-           indent_of(t) > indent_of(name);
+    return name.kind == Tok::Name && theirs && !method &&
+           is_foreign_transform(text_of(source_, name)) && indent_of(t) > indent_of(name);
 }
 
 Tok Layout::brace_kind() {

@@ -17,6 +17,14 @@ TEST_CASE("a line end ends a statement, but not inside parentheses or brackets")
     CHECK(tree_of("a\r\nb\r\n") == "name a; name b");
 }
 
+TEST_CASE("a line end ends a statement whose last method has the name of another language's call") {
+    for (const char *method : {"offset(0.05)", "translate([1, 2, 3])", "rotate(0.5)", "scale(2)"}) {
+        INFO(method);
+        CHECK(tree_of("union { box(1)." + std::string(method) + "\n    sphere(1) }") ==
+              tree_of("union { box(1)." + std::string(method) + "; sphere(1) }"));
+    }
+}
+
 TEST_CASE("a statement goes on behind an operator") {
     for (const char *op : {"|", "&", "or", "and", "==", "<", "+", "-", "*", "/", "%", "^"}) {
         const std::string tree = "binary " + std::string(op) + "(name a, name b)";
