@@ -100,11 +100,6 @@ void Builder::var(Index first, Index) {
 
 void Builder::function(Index first, Index last) {
     shallower();
-    if (expression_body_ && runs_on(first + 1, token(last).end)) {
-        const Span body = ast_.blocks[blocks_.back()].span;
-        const Item nothing{add(Poison{}, body, 1), body.begin, body.end};
-        blocks_.back() = value_block(nothing);
-    }
     std::optional<TypeExpr> result = pop_maybe_type();
     const std::uint32_t body_height = height(blocks_.back());
     const FunctionId function = pop_function(pop_name(), std::move(result), span(first, last));

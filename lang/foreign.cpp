@@ -334,7 +334,7 @@ bool Builder::junk_by_sign(Index first, Index at) {
     if (found == Tok::Arrow && at > 0 && kind(at - 1) == Tok::Name &&
         is_declared(std::string(text(at - 1))))
         return foreign_instead(at, "a part of a value stands behind a `.`", ".");
-    if (found == Tok::Arrow) {
+    if (found == Tok::Arrow && !token(at).first_on_line) {
         foreign(span(at), "a function without a name is written with `=>`")
             .help("write `=>`", {{span(at), "=>"}});
         return true;
@@ -348,7 +348,7 @@ bool Builder::junk_by_sign(Index first, Index at) {
         return true;
     }
     if (found == Tok::Assign && kind(first) == Tok::Let && at == first + 4 &&
-        kind(at - 1) == Tok::Name) { // `let a = b = 1`
+        kind(at - 1) == Tok::Name && !token(at).first_on_line) { // `let a = b = 1`
         const Index end = statement_end(first);
         const std::string a(text(first + 1)), b(text(at - 1)),
             value(text(token(at).end, token(end - 1).end));

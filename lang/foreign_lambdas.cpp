@@ -283,7 +283,10 @@ class Lambdas {
         if (close == 0) return false;
         std::size_t past = close + 1;
         if (kind(past) == Tok::Arrow && kind(past + 1) == Tok::Name) past += 2;
-        if (kind(past) != Tok::Body) return false;
+        bool typed = false; // `float x`: no call of ours
+        for (std::size_t k = open + 1; k + 1 < close; ++k)
+            typed = typed || (kind(k) == Tok::Name && kind(k + 1) == Tok::Name);
+        if (kind(past) != Tok::Body || !typed) return false;
         in_parentheses(i, open, close, past, i);
         return true;
     }

@@ -179,8 +179,7 @@ bool Builder::missing_operand(Index at) {
     return true;
 }
 
-// `let r = 50%`, `fn f(x) = x +`, and on the next line what uses that name: the sign at the line's
-// end was not meant to go on there.
+// `let r = 50%`, and on the next line what uses that name, which has no value yet: a percent.
 bool Builder::runs_on(Index name, std::uint32_t end) {
     const auto column = [&](Index i) {
         const std::size_t line = std::string_view(source_.text).rfind('\n', token(i).begin);
@@ -199,12 +198,8 @@ bool Builder::runs_on(Index name, std::uint32_t end) {
         if (is_one_of(kind(i), {Tok::LambdaName, Tok::LambdaOpen, Tok::For}) && below > 0)
             return false;
         if (below == 0 || kind(i) != Tok::Name || text(i) != text(name)) continue;
-        const Index sign = below - 1;
-        if (foreign_percent(below)) return true;
-        diagnostics_
-            .add(Code::SyntaxError, span(sign), "a value is missing behind " + in_code(text(sign)))
-            .label(span(below), "so the statement goes on here");
-        return true;
+        if (std::ranges::count(declared_, text(name)) > 1) return false; // an outer one is meant
+        return foreign_percent(below);
     }
     return false;
 }

@@ -296,7 +296,8 @@ bool Builder::foreign_body(Index at) {
     body_missing_ = true;
     if (at < tokens_.tokens.size() && found == Tok::End) {
         const Index end = body_below(at);
-        const bool whole = end > at && !goes_on_with_else(end);
+        bool whole = end > at && !goes_on_with_else(end);
+        for (Index i = at; i < end; ++i) whole = whole && kind(i) != Tok::Else;
         std::vector<Edit> edits;
         if (whole) {
             const std::uint32_t header = token(at - 1).end, last = token(end - 1).end;

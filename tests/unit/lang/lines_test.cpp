@@ -58,8 +58,7 @@ TEST_CASE("a line that begins with a bracket or a minus is new") {
 }
 
 TEST_CASE("an operator at a line's beginning is to move up") {
-    for (const char *op :
-         {"+", "*", "/", "%", "^", "==", "<", "and", "or", "=", "->", "=>", ".."}) {
+    for (const char *op : {"+", "*", "/", "%", "^", "==", "<", "and", "or", "=", "=>", ".."}) {
         const Parsed parsed("let x = a\n  " + std::string(op) + " b");
         const auto codes = parsed.codes();
         REQUIRE_FALSE(codes.empty());
