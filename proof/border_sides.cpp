@@ -226,12 +226,19 @@ NodeId Border::unknown_of(NodeId step, int component, int depth) {
         it->second = rounds[graph[step].op] ? graph.make(Op::ToFloat, ir::Type::Float,
                                                          {graph.fresh_var(ir::Type::Int)})
                                             : graph.fresh_var(ir::Type::Float);
+        if (rounds[graph[step].op]) {
+            const NodeId d = graph.fresh_var(ir::Type::Float); // ends included, where limits are
+            notes.ranges[d] = graph[step].op == Op::Round   ? Interval(-0.5, 0.5)
+                              : graph[step].op == Op::Floor ? Interval(-1, 0)
+                                                            : Interval(0, 1);
+            notes.rounded[it->second] = graph.add(args[0], d);
+        }
         const auto width =
             graph[step].op == Op::Mod ? graph.as_number(args[1]) : std::optional(1.0);
         if (graph[step].op == Op::Atan2)
-            ranges[it->second] = {-3.15, 3.15};
+            notes.ranges[it->second] = {-3.15, 3.15};
         else if (!rounds[graph[step].op] && width) // with both ends, where limits are
-            ranges[it->second] = {std::min(*width, 0.0), std::max(*width, 0.0)};
+            notes.ranges[it->second] = {std::min(*width, 0.0), std::max(*width, 0.0)};
     }
     return offset != 0 ? graph.add(it->second, graph.number(offset)) : it->second;
 }
@@ -272,6 +279,15 @@ std::optional<NodeId> Border::parity_of(NodeId count, NodeId two) {
     return odd ? graph.sub(graph.number(1), rest) : rest;
 }
 
+std::optional<NodeId> Border::cosine_of_half_turns(double a) {
+    constexpr double rounding = 1e-15;
+    const double turns = a / std::numbers::pi, n = std::round(turns);
+    if (n == 0 || std::fabs(turns - n) > rounding * std::fabs(n)) return {};
+    const auto odd = parity_of(graph.mul(graph.number(n), whole), graph.number(2));
+    if (!odd) return {};
+    return graph.sub(graph.number(1), graph.mul(graph.number(2), *odd));
+}
+
 std::optional<int> Border::sign_of_count(NodeId count) {
     const auto sum = combination(graph, count, std::array{whole});
     if (!sum) return {};
@@ -281,84 +297,6 @@ std::optional<int> Border::sign_of_count(NodeId count) {
     if (all.lo > 0) return 1;
     if (all.hi < 0) return -1;
     met.thresholds.push_back(-n / j);
-    return {};
-}
-
-Interval Border::range_of(NodeId id) const {
-    if (const auto number = graph.as_number(id)) return *number;
-    if (const auto it = ranges.find(id); it != ranges.end()) return it->second;
-    return ranges[id] = found_range(id);
-}
-
-Interval Border::found_range(NodeId id) const {
-    constexpr ir::OpSet waves{Op::Sin, Op::Cos}, parts{Op::Hash, Op::Smoothstep};
-    const ir::Node node = graph[id];
-    if (node.op == Op::Length || node.op == Op::Dot) {
-        const NodeId v = graph.arg(id, 0), w = graph.arg(id, int(node.count) - 1);
-        Interval sum(0.0);
-        for (int i = 0; i < ir::components(graph[v].type); ++i) {
-            const Interval x = range_of(component_of(graph, v, i));
-            sum = sum + (v == w ? square(x) : x * range_of(component_of(graph, w, i)));
-        }
-        return node.op == Op::Length ? sqrt(sum) : sum;
-    }
-    if (waves[node.op]) return {-1, 1};
-    if (parts[node.op]) return {0, 1};
-    if (node.type != ir::Type::Float) return Interval::everything();
-    const auto arg = [&](int i) { return range_of(graph.arg(id, i)); };
-    if (node.op == Op::Add || node.op == Op::Sub)
-        if (const auto terms = terms_of(graph, id)) return range_of_terms(*terms);
-    if (node.op == Op::Add) return arg(0) + arg(1);
-    if (node.op == Op::Sub) return arg(0) - arg(1);
-    if (node.op == Op::Mul)
-        return graph.arg(id, 0) == graph.arg(id, 1) ? square(arg(0)) : arg(0) * arg(1);
-    if (node.op == Op::Neg) return -arg(0);
-    if (node.op == Op::Abs) return abs(arg(0));
-    if (node.op == Op::Min) return min(arg(0), arg(1));
-    if (node.op == Op::Max) return max(arg(0), arg(1));
-    if (node.op == Op::Clamp) return min(max(arg(0), arg(1)), arg(2));
-    if (node.op == Op::Select) return hull(arg(1), arg(2));
-    if (node.op == Op::Sqrt) return sqrt(max(arg(0), Interval(0.0)));
-    return Interval::everything();
-}
-
-// A sum term by term, but the square of a number and the number together: x^2 + m x is
-// (x + m/2)^2 - m^2/4.
-Interval Border::range_of_terms(const std::vector<Term> &terms) const {
-    std::map<NodeId, std::array<double, 2>> squares; // of x, and of x^2
-    Interval sum(0.0);
-    for (const Term &term : terms) {
-        const auto &x = term.factors;
-        if (x.size() == 1 || (x.size() == 2 && x[0] == x[1])) {
-            squares[x[0]][x.size() - 1] += term.by;
-            continue;
-        }
-        Interval product(term.by);
-        for (NodeId factor : x) product = product * range_of(factor);
-        sum = sum + product;
-    }
-    for (const auto &[x, by] : squares) {
-        const Interval of = range_of(x), a(by[1]), b(by[0]), half = b / (Interval(2.0) * a);
-        sum = sum + (by[1] == 0 ? b * of : a * (square(of + half) - square(half)));
-    }
-    return sum;
-}
-
-std::optional<NodeId> Border::outermost(Op extreme, NodeId a, NodeId b) const {
-    constexpr double rounding = 1e-13;
-    const Interval of_a = range_of(a), of_b = range_of(b);
-    const auto below = [&](const Interval &x, const Interval &y) {
-        return std::isfinite(x.hi) && std::isfinite(y.lo) &&
-               x.hi - y.lo <= rounding * std::max(std::fabs(x.hi), std::fabs(y.lo));
-    };
-    if (below(of_a, of_b)) return extreme == Op::Max ? b : a;
-    if (below(of_b, of_a)) return extreme == Op::Max ? a : b;
-    return {};
-}
-
-std::optional<NodeId> Border::beyond(NodeId x, NodeId least, NodeId most) const {
-    if (outermost(Op::Min, x, most) == most) return most;
-    if (outermost(Op::Max, x, least) == least) return graph.make(Op::Min, {least, most});
     return {};
 }
 

@@ -47,6 +47,7 @@ struct Canonical {
 
     NodeId scalar(NodeId id);
     NodeId under(NodeId id);
+    NodeId noted(NodeId form, NodeId made); // what it was before it was in one form
     std::optional<NodeId> written_product(NodeId a, NodeId b);
     std::optional<NodeId> turned(Op op, NodeId angle);
 
@@ -101,6 +102,21 @@ struct Met {
     bool parity = false;
 };
 
+// What is known of ranges, on all sides alike.
+struct Notes {
+    std::map<NodeId, Interval> ranges;
+    std::map<NodeId, NodeId> rounded;         // of unknown whole numbers: t + d, t what was rounded
+    std::map<NodeId, std::vector<NodeId>> as; // what forms were before they were sums of products
+    void keep(NodeId form, NodeId made);
+};
+
+// What |x| is at least: the size of another number less a constant.
+struct Core {
+    NodeId of;
+    double off = 0;
+    bool turned = false; // has sines and cosines for factors
+};
+
 // One side of a group's borders, where what turns is K, or K + 1/2.
 struct Border {
     Graph &graph;
@@ -109,7 +125,7 @@ struct Border {
     const NodeId whole, little, little_angle, radius;      // K; how far from the border; by which
                                                            // angle; how far from an axis
     std::map<std::vector<std::uint32_t>, NodeId> &unknown; // by op and arguments, of all sides
-    std::map<NodeId, Interval> &ranges;                    // … of those that have an end
+    Notes &notes;                                          // … what is known of their ranges
     const bool half;
     const Side side;
     const Counts &counts;
@@ -156,13 +172,22 @@ struct Border {
     double whole_offset(NodeId step, std::vector<NodeId> &args);
     // (j K + n) % 2, j and n whole, by K % 2.
     std::optional<NodeId> parity_of(NodeId count, NodeId two);
+    // cos(a K), where a is a whole number of half turns: 1 or -1; sin(a K) is 0 there.
+    std::optional<NodeId> cosine_of_half_turns(double a);
     // The sign of j K + n, where that is known of K.
     std::optional<int> sign_of_count(NodeId count);
     bool reads_little(NodeId id) const;
     // What a scalar is between, made of numbers and unknown steps; nothing is known of the point.
     Interval range_of(NodeId id) const;
     Interval found_range(NodeId id) const;
+    Interval range_as_made(NodeId id) const;
     Interval range_of_terms(const std::vector<Term> &terms) const;
+    Interval range_by_rounded(const std::vector<Term> &terms) const;
+    // Of turned and moved parts: lengths, and the greatest of several.
+    bool is_wave(NodeId factor) const; // a sine, a cosine, or the size of what has such
+    std::optional<Core> core_of(NodeId x, bool from_below, int depth = 0) const;
+    Interval range_by_cores(const std::vector<NodeId> &parts, bool greatest) const;
+    double size_of_terms(NodeId id) const; // the greatest number in a sum
     // The first extreme's argument that is never beyond the other, but for rounding.
     std::optional<NodeId> outermost(Op extreme, NodeId a, NodeId b) const;
     // The limit that x is never within of, but for rounding, of min(max(x, least), most).

@@ -50,12 +50,12 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
                  little_angle = graph.fresh_var(ir::Type::Float),
                  radius = graph.fresh_var(ir::Type::Float);
     std::map<std::vector<std::uint32_t>, NodeId> unknown;
-    std::map<NodeId, Interval> ranges;
+    Notes notes;
     std::vector<NodeId> sides;
     bool same_for_all = true;
     for (const Side side : {Side::Before, Side::At, Side::After}) {
-        Border border{graph,   group,  seen, whole, little, little_angle, radius,
-                      unknown, ranges, half, side,  counts, met,          work};
+        Border border{graph,   group, seen, whole, little, little_angle, radius,
+                      unknown, notes, half, side,  counts, met,          work};
         border.enter(border.limit, false);
         border.enter(border.moving, true);
         sides.push_back(border.limit.of(seen.through));

@@ -55,6 +55,34 @@ bool single_is_far_off(const Graph &graph, NodeId number) {
     return false;
 }
 
+bool is_made_whole(const Graph &graph, NodeId id, int depth) {
+    constexpr int max_depth = 12;
+    constexpr ir::OpSet keep{Op::Add, Op::Sub,  Op::Mul,  Op::Neg,     Op::Abs,  Op::Min,
+                             Op::Max, Op::Sign, Op::Make, Op::Swizzle, Op::Splat};
+    const ir::Node node = graph[id];
+    if (graph.is_constant(id)) {
+        const ir::Constant &c = graph.constant_of(id);
+        for (int i = 0; i < ir::components(c.type); ++i)
+            if (const double x = c.value[std::size_t(i)]; std::floor(x) != x) return false;
+        return true;
+    }
+    if (node.type == ir::Type::Int || is_whole(graph, id)) return true;
+    if (!keep[node.op] || depth > max_depth) return false;
+    return std::ranges::all_of(graph.args(id),
+                               [&](NodeId a) { return is_made_whole(graph, a, depth + 1); });
+}
+
+bool is_whole_power_of_two(const Graph &graph, NodeId id) {
+    if (graph[id].op == Op::Splat) id = graph.arg(id, 0);
+    if (!graph.is_constant(id)) return false;
+    const ir::Constant &c = graph.constant_of(id);
+    for (int i = 0; i < ir::components(c.type); ++i) {
+        int exponent = 0;
+        if (std::frexp(c.value[std::size_t(i)], &exponent) != 0.5 || exponent < 1) return false;
+    }
+    return true;
+}
+
 bool exactly_same(Graph &graph, NodeId a, NodeId b) {
     if (a == b) return true;
     const ir::Type type = graph[a].type;

@@ -18,6 +18,9 @@ bool is_exact(ir::Graph &graph, ir::NodeId scalar);
 // root or another fraction goes into, which hashes multiply with large numbers: the sine of a number
 // near 300, times 43758.5, may be wrong by 1. Of a hash like that nothing is known but its range.
 bool single_is_far_off(const ir::Graph &graph, ir::NodeId number);
+// Is every component whole by its making, also in single precision? Is it 2^k, k >= 0?
+bool is_made_whole(const ir::Graph &graph, ir::NodeId id, int depth = 0);
+bool is_whole_power_of_two(const ir::Graph &graph, ir::NodeId id);
 // The same node, or the same exact number, by component.
 bool exactly_same(ir::Graph &graph, ir::NodeId a, ir::NodeId b);
 

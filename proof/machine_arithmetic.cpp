@@ -87,24 +87,27 @@ void Step::quotient() {
 
 void Step::remainder() {
     bool jumps = false;
+    const double less = in.whole ? 1 : 0; // a whole number's is at most the divisor less 1
+    const auto all = [&](Interval m) {
+        return Interval(std::min(m.lo + less, 0.0), std::max(m.hi - less, 0.0));
+    };
     for (int c = 0; c < n; ++c) {
         Interval x = value(0, c), m = value(1, c);
         if (m.contains(0)) {
             jumps = jumps || !zero(grad(0, c)) || !zero(grad(1, c));
-            double most = std::max(x.magnitude(), m.magnitude());
-            set(c, {-most, most}, none);
+            const double size = std::max(x.magnitude(), m.magnitude());
+            set(c, {-size, size}, none);
             continue;
         }
         if (in.scatters && norm(0) == 0 && norm(1) == 0) {
-            set(c, {std::min(m.lo, 0.0), std::max(m.hi, 0.0)}, none);
+            set(c, all(m), none);
             continue;
         }
         Interval turns = floor(x / m);
         if (by_ways()) {
             turns = one_of(turns);
             const bool one = turns.is_point() && turns.finite();
-            const Interval whole(std::min(m.lo, 0.0), std::max(m.hi, 0.0));
-            set(c, one ? meet(whole, x - m * turns) : whole,
+            set(c, one ? meet(all(m), x - m * turns) : all(m),
                 one ? sum(grad(0, c), scaled(-turns, grad(1, c))) : grad(0, c));
             jumps = jumps || !zero(grad(1, c));
             continue;
@@ -114,7 +117,7 @@ void Step::remainder() {
             continue;
         }
         jumps = jumps || !zero(grad(1, c)) || (!cancels() && !zero(grad(0, c)));
-        set(c, {std::min(m.lo, 0.0), std::max(m.hi, 0.0)}, grad(0, c));
+        set(c, all(m), grad(0, c));
     }
     if (is_int()) return settle_int();
     if (jumps) return fail(Trouble::Jump);

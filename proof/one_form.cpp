@@ -93,8 +93,9 @@ NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
     if ((node.op == Op::Sin || node.op == Op::Cos) && node.type == ir::Type::Float) {
         if (const auto sum = turned(node.op, args[0])) return *sum;
         args[0] = without_iterations(graph, args[0]);
-        constexpr double nothing = 1e-9; // where an angle is cut, pi may have few digits
-        if (const auto a = graph.as_number(args[0]); a && border && border->group.is_angle)
+        // where an angle is cut, pi may have few digits
+        const double nothing = border && border->group.is_angle ? 1e-9 : 1e-15;
+        if (const auto a = graph.as_number(args[0]); a && border)
             if (std::fabs(node.op == Op::Sin ? std::sin(*a) : std::cos(*a)) < nothing)
                 return graph.number(0);
     }
@@ -104,7 +105,8 @@ NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
             NodeId part = scalar(component_of(graph, args[0], i));
             sum = graph.add(sum, graph.mul(part, part));
         }
-        return graph.make(Op::Sqrt, ir::Type::Float, {under(scalar(sum))});
+        const NodeId root = graph.make(Op::Sqrt, ir::Type::Float, {noted(under(scalar(sum)), sum)});
+        return noted(root, graph.make(Op::Length, ir::Type::Float, {args[0]}));
     }
     if (node.type == ir::Type::Float && (node.op == Op::Abs || node.op == Op::Sqrt))
         args[0] = under(args[0]);
@@ -117,7 +119,7 @@ NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
     if (node.op == Op::MatMul && ir::is_vector(node.type))
         if (const auto product = written_product(args[0], args[1])) return *product;
     NodeId made = graph.make(node.op, node.type, args, node.payload);
-    if (node.type == ir::Type::Float) return scalar(made);
+    if (node.type == ir::Type::Float) return noted(scalar(made), made);
     if (node.type == ir::Type::Int) {
         auto w = whole(scalar(as_float(made)));
         return w ? *w : made;
@@ -191,6 +193,11 @@ NodeId Canonical::scalar(NodeId id) {
                                       : in_one_form(graph, id, work);
 }
 
+NodeId Canonical::noted(NodeId form, NodeId made) {
+    if (border && !failed) border->notes.keep(form, made);
+    return form;
+}
+
 // What a root or a size is of.
 NodeId Canonical::under(NodeId id) {
     return border && border->by_angle ? with_round_numbers(graph, id) : id;
@@ -219,6 +226,9 @@ std::optional<NodeId> Canonical::turned(Op op, NodeId angle) {
     if (!border) return {};
     const auto sum = combination(graph, angle, std::array{border->whole});
     if (!sum || (*sum)[0] == 0) return {};
+    if (const auto cosine = border->cosine_of_half_turns((*sum)[0]))
+        return scalar(graph.mul(
+            *cosine, graph.number(op == Op::Cos ? std::cos((*sum)[1]) : std::sin((*sum)[1]))));
     constexpr double grain = 0x1p32; // so that equal angles are one
     const NodeId part =
         graph.mul(graph.number(std::round((*sum)[0] * grain) / grain), border->whole);

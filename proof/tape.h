@@ -56,6 +56,7 @@ struct Instruction {
     bool stepped = false; // an angle that steps alone read (polar.h)
     // Of a Fract or Mod: single precision may have its argument so wrong that it is any (exact.h).
     bool scatters = false;
+    bool whole = false;   // a Mod of whole numbers by a power of two from 1 on (exact.h)
     bool cancels = false; // a step whose jumps the result does not see (discontinuities.h)
     Slot out = 0;
     std::vector<Slot> args;
