@@ -20,7 +20,7 @@ void Prover::name_axioms() {
         const Shape &shape = scene.shapes[ir::ShapeId{i}];
         if (!places[i].reported) continue; // of no one, or below claims that are taken
         const std::string name = operation_name(scene, ir::ShapeId{i});
-        if (shape.assumed > 0)
+        if (shape.assumed > 0 && !held.contains(ir::ShapeId{i}))
             add(Axiom::Kind::Assumed, name + ": lipschitz " + number_text(shape.assumed),
                 shape.origin);
         if (shape.estimate > 0)

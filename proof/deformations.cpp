@@ -242,12 +242,15 @@ Derived Prover::know_distort(ShapeId id, Derived k) {
         k.fact.bounds = here;
     }
     double factor;
-    if (shape.assumed > 0 || shape.estimate > 0) {
-        factor = shape.assumed > 0 ? shape.assumed : shape.estimate;
-        test_assumed(id, shape.args[0], factor, shape.assumed <= 0);
-        k.fact.status = std::max(k.fact.status, shape.assumed > 0 ? ir::ProofStatus::Assumed
-                                                                  : ir::ProofStatus::Estimated);
-        if (shape.assumed <= 0) k.fact.kind = FieldKind::Estimate;
+    if (shape.estimate > 0) {
+        factor = shape.estimate;
+        test_estimate(id, shape.args[0], factor);
+        k.fact.status = std::max(k.fact.status, ir::ProofStatus::Estimated);
+        k.fact.kind = FieldKind::Estimate;
+    } else if (shape.assumed > 0) {
+        const auto b = holds_stated(id, shape.args[0], shape.assumed);
+        factor = b ? b->lipschitz : shape.assumed;
+        if (!b) k.fact.status = std::max(k.fact.status, ir::ProofStatus::Assumed);
     } else {
         FieldBound b;
         if (everywhere(here) && own_box(shape, k) && place(id).reported) {

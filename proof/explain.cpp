@@ -98,7 +98,7 @@ std::string rule_text(const ir::Scene &scene, ShapeId id, Prover &prover) {
         }
         break;
     case ShapeKind::Leaf:
-        if (shape.assumed > 0) return "assumed";
+        if (fact.status == ir::ProofStatus::Assumed) return "assumed";
         if (shape.estimate > 0) return "estimated";
         return "the steepest slope of the field over its region";
     case ShapeKind::Displace: return "the displacement's slope is added";

@@ -342,15 +342,23 @@ Derived Prover::know_leaf(ShapeId id) {
             across[axis] = true;
             k.fact.symmetric[axis] = reflected(tape, across) == Reflected::Same;
         }
-    if (shape.assumed > 0 || shape.estimate > 0) {
-        bool assumed = shape.assumed > 0;
-        set_lipschitz(k, assumed ? shape.assumed : shape.estimate);
-        k.fact.status = assumed ? ir::ProofStatus::Assumed : ir::ProofStatus::Estimated;
-        if (!assumed) k.fact.kind = FieldKind::Estimate;
-        test_assumed(id, shape.args[0], k.fact.lipschitz_sup, !assumed);
+    if (shape.estimate > 0) {
+        set_lipschitz(k, shape.estimate);
+        k.fact.status = ir::ProofStatus::Estimated;
+        k.fact.kind = FieldKind::Estimate;
+        test_estimate(id, shape.args[0], k.fact.lipschitz_sup);
         return k;
     }
-    FieldBound b = bound(id, shape.args[0], "this field");
+    std::optional<FieldBound> held_bound;
+    if (shape.assumed > 0) {
+        held_bound = holds_stated(id, shape.args[0], shape.assumed);
+        if (!held_bound) {
+            set_lipschitz(k, shape.assumed);
+            k.fact.status = ir::ProofStatus::Assumed;
+            return k;
+        }
+    }
+    const FieldBound b = held_bound ? *held_bound : bound(id, shape.args[0], "this field");
     if (!std::isfinite(b.lipschitz)) {
         fail(k);
         return k;
@@ -365,119 +373,6 @@ Derived Prover::know_leaf(ShapeId id) {
     k.leaf = shape.args[0];
     if (b.lipschitz == 0) set_lipschitz(k, 1); // a constant
     return k;
-}
-
-// Pairs of points at all distances, and gradient ascent from the steepest: two points that refute
-// the limit, if any are found.
-void Prover::test_assumed(ShapeId id, NodeId field, double limit, bool estimate) {
-    const Place &here = place(id);
-    if (!here.reported || !options.test_assumptions) return;
-    const Tape &tape = tape_of(field);
-    if (tape.too_large) return;
-    if (work.spent()) {
-        report(id, Code::ProofLimit, "");
-        return;
-    }
-    Machine machine(tape, ranges);
-    Dice dice{0xa55e55};
-    int dims = scene.shapes[id].dims;
-    auto random_point = [&] {
-        std::array<double, 3> p{};
-        for (int tries = 0; tries < 64; ++tries) {
-            for (std::size_t i = 0; i < 3; ++i) {
-                double lo = std::max(here.box.lo[i], -4.0), hi = std::min(here.box.hi[i], 4.0);
-                if (lo > hi)
-                    lo = hi = std::isfinite(here.box.lo[i]) ? here.box.lo[i] : here.box.hi[i];
-                p[i] = dims == 2 && i == 2 ? 0 : lo + (hi - lo) * dice.next();
-            }
-            if (!here.zone ||
-                !misses(*here.zone, {{Interval(p[0]), Interval(p[1]), Interval(p[2])}}))
-                break;
-        }
-        return p;
-    };
-    using Values = std::array<Interval, 4>;
-    auto evaluate = [&](const std::array<double, 3> &p) {
-        machine.run({{Interval(p[0]), Interval(p[1]), Interval(p[2])}});
-        Values v{Interval(0), Interval(0), Interval(0), Interval(0)};
-        for (int i = 0; i < std::min(machine.size(), 4); ++i)
-            v[static_cast<std::size_t>(i)] = machine.value(i);
-        return v;
-    };
-    // The rise is what lies between the two intervals: where rounding leaves a choice open, both of
-    // its branches are in there, and nothing is refuted.
-    auto slope = [&](const std::array<double, 3> &p, const std::array<double, 3> &q) {
-        Values a = evaluate(p), b = evaluate(q);
-        double rise = 0, run = 0;
-        for (std::size_t i = 0; i < 4; ++i) {
-            double gap = std::max({0.0, a[i].lo - b[i].hi, b[i].lo - a[i].hi});
-            if (!a[i].finite() || !b[i].finite()) return 0.0;
-            rise += gap * gap;
-        }
-        for (std::size_t i = 0; i < 3; ++i) run += (p[i] - q[i]) * (p[i] - q[i]);
-        return run > 0 ? std::sqrt(rise / run) : 0.0;
-    };
-    // fewer where a field has long loops, so that the work is bounded: about 5 million operations
-    const double share = std::min(1.0, 1e3 / ir::operations(scene.graph, field));
-    const int pairs = std::max(10, static_cast<int>(2000 * share));
-    int violations = 0;
-    double worst = 0;
-    std::array<double, 3> worst_a{}, worst_b{};
-    auto keep = [&](double s, const std::array<double, 3> &a, const std::array<double, 3> &b) {
-        if (s > worst) worst = s, worst_a = a, worst_b = b;
-    };
-    for (int n = 0; n < pairs; ++n) {
-        auto a = random_point(), b = random_point();
-        double reach = std::pow(
-            10.0, -4 * dice.next()); // from the whole region down to a ten-thousandth of it
-        for (std::size_t i = 0; i < 3; ++i) b[i] = a[i] + (b[i] - a[i]) * reach;
-        double s = slope(a, b);
-        violations += s > limit * (1 + 1e-6);
-        keep(s, a, b);
-    }
-    // Ascent: small moves of a short pair that make it steeper.
-    std::array<double, 3> a = worst_a, b = worst_b;
-    double step = 0.1;
-    for (int n = 0; n < static_cast<int>(400 * share); ++n) {
-        auto c = a, d = b;
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (dims == 2 && i == 2) continue;
-            double move = step * (2 * dice.next() - 1);
-            c[i] += move, d[i] += move;
-            d[i] += step * 0.1 * (2 * dice.next() - 1);
-            c[i] = std::clamp(c[i], here.box.lo[i], here.box.hi[i]);
-            d[i] = std::clamp(d[i], here.box.lo[i], here.box.hi[i]);
-        }
-        if (here.zone && (misses(*here.zone, {{Interval(c[0]), Interval(c[1]), Interval(c[2])}}) ||
-                          misses(*here.zone, {{Interval(d[0]), Interval(d[1]), Interval(d[2])}})))
-            continue;
-        double s = slope(c, d);
-        if (s > worst) {
-            keep(s, c, d);
-            a = c, b = d;
-        } else {
-            step = std::max(step * 0.98, 1e-4);
-        }
-    }
-    const auto [one_end, other_end] = two_points(worst_a, worst_b, dims);
-    std::string witness =
-        "between " + one_end + " and " + other_end + " its slope is " + number_text(worst);
-    if (estimate) {
-        if (Diagnostic *d = report(id, Code::EstimatedField,
-                                   "this field is marched by an estimate, which is not a proof: "
-                                   "thin parts may be missed"))
-            d->note(fmt::format("{:.2g} % of {} pairs of points are steeper than {}; ",
-                                100.0 * violations / pairs, pairs, number_text(limit)) +
-                    (worst > 0 ? witness : "none of them is steep at all"));
-    } else if (worst > limit * (1 + 1e-6)) {
-        if (Diagnostic *d =
-                report(id, Code::LipschitzViolated,
-                       "the field is steeper than `lipschitz: " + number_text(limit) + "` says"))
-            d->note(witness).help("state at least " + number_text(std::ceil(worst * 100) / 100) +
-                                  ", or leave `lipschitz:` out to have it proved; what is no "
-                                  "distance, as a fractal's, can be drawn by an `estimate:`");
-        // The picture is refused; what depends on it is not reported again.
-    }
 }
 
 } // namespace fathom::proof

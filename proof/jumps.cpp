@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <unordered_set>
+#include <utility>
 
 namespace fathom::proof {
 namespace {
@@ -52,23 +52,39 @@ bool jumps(Machine &machine, Sides &sides) {
            sides.gap() > 1e-4 * std::max({1.0, std::fabs(sides.value_a), std::fabs(sides.value_b)});
 }
 
+// By the pairs between which decisions turn: those near the place that is named, then those of all
+// of the box. A jump that is small beside what the field does on the way to it is met by these alone.
+bool find_by_turns(Machine &machine, FieldBound &out, double scale, SomeWays ways) {
+    constexpr int pairs_near = 200, pairs_in_all = 300;
+    const std::array<double, 3> place = out.where;
+    double reach = 1;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (ways.reads[i]) reach = std::min(reach, ways.box.p[i].width() / 2);
+    for (int k = 0; k < pairs_near + pairs_in_all; ++k) {
+        const auto way = k < pairs_near ? ways.next_near(place, reach) : ways.next();
+        if (!way) continue;
+        const auto pair = turning(machine, *way, 2 * scale);
+        if (!pair || !ways.inside(pair->a) || !ways.inside(pair->b)) continue;
+        const auto sides = sides_at(machine, pair->a, pair->b);
+        Sides nearer = sides.value_or(Sides{});
+        if (!sides || !jumps(machine, nearer)) continue;
+        out.side_a = sides->a, out.side_b = sides->b;
+        out.value_a = sides->value_a, out.value_b = sides->value_b;
+        out.known_sides = out.seen_jump = true;
+        for (std::size_t i = 0; i < 3; ++i) out.where[i] = (sides->a[i] + sides->b[i]) / 2;
+        return true;
+    }
+    return false;
+}
+
 } // namespace
 
 void find_sides(const Tape &tape, Ranges ranges, FieldBound &out, double scale,
                 const std::array<bool, 3> &reads, const Cell &box, const Zone *zone) {
-    std::unordered_set<std::uint32_t> whole; // params
-    for (const auto *block : {&tape.once, &tape.each})
-        for (const Instruction &in : *block) {
-            out.held_params = out.held_params || in.op == Op::Param;
-            out.held_time = out.held_time || in.op == Op::Time;
-            if (in.op == Op::Param && (in.type == ir::Type::Int || in.type == ir::Type::Bool))
-                whole.insert(in.payload);
-        }
-    for (std::uint32_t i = 0; i < ranges.params.size(); ++i)
-        for (Interval &range : ranges.params[i])
-            if (range.finite())
-                range = whole.contains(i) ? std::floor(range.middle()) : range.middle();
-    ranges.time = ranges.time.lo;
+    const Told holds = reads_of(tape);
+    out.held_params = holds.params;
+    out.held_time = holds.time;
+    ranges = held_at(tape, std::move(ranges), Held::Middle);
     Machine machine(tape, ranges);
     machine.read_values();
     const auto take = [&](const Sides &sides) {
@@ -90,6 +106,8 @@ void find_sides(const Tape &tape, Ranges ranges, FieldBound &out, double scale,
         take(out.seen_jump ? *widest : nearer); // what does not jump is told where it nearly meets
     }
     if (out.seen_jump) return;
+    SomeWays ways{box, zone, reads};
+    if (out.trouble == Trouble::Jump && find_by_turns(machine, out, scale, ways)) return;
     // Places spread evenly by the multiples of the plastic number's kin in three dimensions (Roberts 2018).
     constexpr std::array<double, 3> spread{0.8191725133961645, 0.6710436067037893,
                                            0.5497004779019703};

@@ -2,18 +2,13 @@
 // proves nothing.
 #pragma once
 
-#include "proof/field.h"
-#include "proof/machine.h"
+#include "proof/crossings.h"
 
 namespace fathom::proof {
 
-inline Cell at_point(const std::array<double, 3> &p) {
-    return {{Interval(p[0]), Interval(p[1]), Interval(p[2])}};
-}
-
-// Two near points on both sides of a jump, for its report: about `out.where`, else about one of some
-// hundred places of the box; without a jump that is seen, the former. Params are in the middle of
-// their ranges, and the time is the first.
+// Two near points on both sides of a jump, for its report: at `out.where`, else near it, else at one
+// of some hundred places of the box; without a jump that is seen, those at `out.where`. Params are in
+// the middle of their ranges, and the time is the first.
 void find_sides(const Tape &tape, Ranges ranges, FieldBound &out, double scale,
                 const std::array<bool, 3> &reads, const Cell &box, const Zone *zone);
 

@@ -165,6 +165,7 @@ void Machine::reach(const Cell &cell) {
 void Machine::run(const Cell &cell) {
     if (ranges_.work->spent()) return know_nothing();
     const std::size_t before = work_;
+    decided_ = 0;
     reach(cell);
     run(tape_.each);
     ranges_.work->take(work_ - before);

@@ -88,6 +88,8 @@ class Machine {
     // From here on hashes and noise have the values at the middle of what they are of, not their
     // ranges: for what is told of single points, and for no bound.
     void read_values() { reads_values_ = true; }
+    // … and what all steps decided in the last run, as one number (crossings.cpp).
+    std::uint64_t decided() const { return decided_; }
 
     int size() const { return tape_.size[tape_.result]; }
     Interval value(int i) const {
@@ -131,6 +133,8 @@ class Machine {
     void know_nothing();
     void run_loop(const Instruction &instruction);
     void step(const Instruction &instruction);
+    void decide(const Instruction &instruction);
+    void read_step(const Instruction &instruction);
     void finish(const Instruction &instruction, double norm, bool odd_used);
     void hold_mean(const Instruction &instruction);
     void hold_norm(Slot s, double most);
@@ -166,6 +170,7 @@ class Machine {
     Cell cell_;
     bool near_ = false; // no coordinate of the cell is above `near_enough`
     bool reads_values_ = false;
+    std::uint64_t decided_ = 0;
     std::optional<Distances> distances_;
     std::vector<std::uint8_t> coordinate_; // by component: 1 + that of the point that it is, or 0
     bool in_reach_ = false; // the cell is where rays go, and values may leave single precision

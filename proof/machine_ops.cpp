@@ -46,7 +46,10 @@ void Machine::step(const Instruction &instruction) {
         value_[tape_.first[instruction.out]] = *instruction.stands_at;
         relative_[instruction.out] = infinity; // it was that of another value
     }
-    if (reads_values_) step.read();
+    if (reads_values_) {
+        step.read();
+        decide(instruction);
+    }
     if (!bend_.empty()) bend_[instruction.out] = step.bend();
 }
 

@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <tuple>
+#include <unordered_set>
 
 namespace fathom::proof {
 
@@ -42,6 +43,7 @@ struct Prover {
     std::vector<Place> places;
     std::deque<Zone> zones;            // stable addresses
     std::size_t leaf_instructions = 0; // of a field of one's own whose bound is loose, at most
+    std::size_t leaf_work = 0;         // for trying to prove a bound that is stated, at most
     std::size_t deformed = 0;          // how many shapes are twisted, bent, tapered or distorted
     bool told_of_work = false;
 
@@ -195,7 +197,13 @@ struct Prover {
     bool report_division(ir::ShapeId id, const FieldBound &bound, const Blamed &blamed,
                          const std::string &what); // false: not said here
     void report_field(ir::ShapeId id, const FieldBound &bound, const std::string &what);
-    void test_assumed(ir::ShapeId id, ir::NodeId field, double limit, bool estimate);
+    void test_estimate(ir::ShapeId id, ir::NodeId field, double estimate); // assumed.cpp
+    // What is proved of a field whose bound the user states, where that is no more. Else the bound
+    // is tested, and refused where a pair of points is steeper.
+    std::optional<FieldBound> holds_stated(ir::ShapeId id, ir::NodeId field, double stated);
+    FieldBound bound_apart(ir::NodeId field, const Place &here, double stated, bool own);
+    void test_stated(ir::ShapeId id, ir::NodeId field, double stated, const FieldBound &found);
+    std::unordered_set<ir::ShapeId> held; // of those that state a bound: for which it is proved
     std::vector<std::string>
     chain(ir::ShapeId id); // the operations that make a bound, steepest child first
 };

@@ -76,6 +76,7 @@ void Prover::run() {
     }
     // Together they take an eighth of what the proof may.
     const std::size_t each = options.work / 8 / std::max<std::size_t>(leaves, 1);
+    leaf_work = std::max(each, 2 * options.field_instructions);
     leaf_instructions =
         options.field_instructions *
         std::min<std::size_t>(std::bit_floor(each / options.field_instructions), 16);

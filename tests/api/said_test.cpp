@@ -109,7 +109,9 @@ TEST_CASE("a bound is explained as a tree whose root is the bound") {
 TEST_CASE("what a compilation is told decides what it proves") {
     fathom::CompileOptions options;
     const std::string stated =
-        "implicit(p => length(p) - noise(p), within: ball(2), lipschitz: 3)\n";
+        "fn g(p: vec3) -> float = if p.y > 0 { atan(p.x + 4) } else { pi / 2 - atan(1 / (p.x + 4)) "
+        "}\n"
+        "implicit(p => length(p) - noise(p) + 0.1 * g(p), within: ball(2), lipschitz: 3.2)\n";
     const auto loose = fathom::compile_text("a.sdf", stated);
     REQUIRE(loose);
     CHECK(loose.scene->facts().status == fathom::Status::Assumed);

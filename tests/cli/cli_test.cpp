@@ -462,7 +462,10 @@ TEST_CASE("what a proof rests on is named, and refused under --strict-proof") {
     ScratchFolder folder;
     folder.write("proved.sdf", "implicit(p => length(p) - 1)\n");
     folder.write("library.sdf", "sphere(1)\n");
-    folder.write("assumed.sdf", "implicit(p => length(p) - 1, lipschitz: 1)\n");
+    folder.write("assumed.sdf",
+                 "fn g(p: vec3) -> float = if p.y > 0 { atan(p.x + 4) } else { pi / 2 - atan(1 / "
+                 "(p.x + 4)) }\n"
+                 "implicit(p => length(p) - 1 + 0.2 * g(p), within: ball(2), lipschitz: 1.2)\n");
     folder.write("estimated.sdf", "implicit(p => length(p) - 1, estimate: 1)\n");
     for (const std::string command : {"check ", "compile --field-only ", "compile ",
                                       "render --size 8x8 --backend cpu -o a.png "}) {

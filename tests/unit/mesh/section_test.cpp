@@ -162,7 +162,7 @@ TEST_CASE("a plane beside the solid has no contour, and an estimate proves nothi
     CHECK(cut("sphere(1)", 2, 5, 20).contours.empty());
     CHECK(cut("sphere(1)", 2, 5, 20).area.hi == 0);
     CHECK_FALSE(
-        cut("implicit(p => length(p) - 1, lipschitz: 1, within: ball(2))", 2, 0, 20).used_bound);
+        cut("implicit(p => length(p) - 1, estimate: 1, within: ball(2))", 2, 0, 20).used_bound);
 }
 
 TEST_CASE("files of contours") {
