@@ -274,8 +274,9 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             "`floor`: `let x = clamp(…, 0, last)`, then `mix(list[int(floor(x))], "
             "list[int(floor(x)) + 1], fract(x))`; ";
         constexpr ir::OpSet steps{Op::Floor, Op::Round, Op::Ceil, Op::Fract, Op::Mod};
+        const bool by_cells = b.cause && steps[*b.cause];
         const std::string meeting =
-            b.cause && steps[*b.cause]
+            by_cells
                 ? "where copies differ from cell to cell keep the distance below the way to the "
                   "next copy, as in `min(d, 0.2)`, or let `repeat` look at the neighbours: "
                   "`.repeat([1, 0, 0], (s, id) => …)`; "
@@ -302,8 +303,10 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                                          held + "), but that they meet everywhere is not seen"
                                    : ", and that its sides meet is not seen"))
                 .help((by_list ? between
-                               : "write it with `min`, `max`, `clamp` or `abs`, whose continuity "
-                                 "is known, ") +
+                       : by_cells
+                           ? meeting
+                           : "write it with `min`, `max`, `clamp` or `abs`, whose continuity "
+                             "is known, ") +
                       assume);
         return;
     }
