@@ -11,8 +11,8 @@ namespace fathom::proof {
 
 double Pair::length() const { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-// Of a number on its border, as an even one is of `x % 2`, a step has one value where that number is
-// exact: not the hull of both sides.
+// Of a number on its border, as an even one is of `x % 2`, a step has one value where that number
+// is exact: not the hull of both sides.
 void Machine::read_step(const Instruction &in) {
     const ir::Graph &graph = ranges_.scene->graph;
     std::vector<ir::Constant> args;

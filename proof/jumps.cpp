@@ -53,7 +53,7 @@ bool jumps(Machine &machine, Sides &sides) {
 }
 
 // By the pairs between which decisions turn: those near the place that is named, then those of all
-// of the box. A jump that is small beside what the field does on the way to it is met by these alone.
+// of the box. A jump that is small beside what the field does on the way to it is met by these.
 bool find_by_turns(Machine &machine, FieldBound &out, double scale, SomeWays ways) {
     constexpr int pairs_near = 200, pairs_in_all = 300;
     const std::array<double, 3> place = out.where;

@@ -6,9 +6,9 @@
 
 namespace fathom::proof {
 
-// Two near points on both sides of a jump, for its report: at `out.where`, else near it, else at one
-// of some hundred places of the box; without a jump that is seen, those at `out.where`. Params are in
-// the middle of their ranges, and the time is the first.
+// Two near points on both sides of a jump, for its report: at `out.where`, else near it, else at
+// one of some hundred places of the box; without a jump that is seen, those at `out.where`. Params
+// are in the middle of their ranges, and the time is the first.
 void find_sides(const Tape &tape, Ranges ranges, FieldBound &out, double scale,
                 const std::array<bool, 3> &reads, const Cell &box, const Zone *zone);
 
