@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t most_params = 4, most_moving = 2, most_nodes = 4000;
 constexpr double least_width = 1e-3; // of what moves: of one moment it is what rounding makes of it
-constexpr int pieces = 8;            // of a range
+constexpr int range_pieces = 8;      // of a range
 constexpr int most_halvings = 3;
 constexpr double pays_from = 1.25;     // times the present bound, from where on a formula is
 constexpr double near_enough = 1.1;    // a line this near the bound in its middle is not halved
@@ -192,7 +192,7 @@ class ParamBounds {
         const std::size_t left = context_.work.left;
         if (!pays(whole, at(input, Interval(input.present)))) return;
         // A formula of the time is worth no refusal for want of work.
-        constexpr std::size_t searches = 2 * (pieces + most_halvings);
+        constexpr std::size_t searches = 2 * (range_pieces + most_halvings);
         if (input.op == Op::Var && (left - context_.work.left) * searches > context_.work.left / 2)
             return;
         most_ = 0;
@@ -248,8 +248,8 @@ class ParamBounds {
     // Pieces of one ratio, where there is one: what scales by a param has it for a slope.
     static std::vector<double> ends_of_pieces(Interval range) {
         std::vector<double> out{range.lo};
-        for (int i = 1; i < pieces; ++i) {
-            const double way = double(i) / pieces;
+        for (int i = 1; i < range_pieces; ++i) {
+            const double way = double(i) / range_pieces;
             out.push_back(range.lo > 0 ? range.lo * std::pow(range.hi / range.lo, way)
                                        : range.lo + way * (range.hi - range.lo));
         }
@@ -260,7 +260,7 @@ class ParamBounds {
         const Interval range = input.range;
         const std::vector<double> ends = ends_of_pieces(range);
         NodeId out;
-        for (std::size_t i = pieces; i-- > 0;) {
+        for (std::size_t i = range_pieces; i-- > 0;) {
             // A little wider than its place, for values that are rounded.
             const double lo = ends[i], hi = ends[i + 1],
                          rim = 1e-6 * std::max(std::fabs(lo), std::fabs(hi));

@@ -198,7 +198,7 @@ struct OfOne {
     std::optional<NodeId> x; // none: a number
     std::vector<double> by;
 };
-std::optional<OfOne> of_one(Graph &graph, NodeId id, int depth = 0) {
+std::optional<OfOne> of_one(ir::Graph &graph, NodeId id, int depth = 0) {
     constexpr int max_depth = 10;
     constexpr std::size_t max_powers = 10;
     const ir::Node node = graph[id];

@@ -16,7 +16,7 @@ driver::Compilation stated(const std::string &field, double bound,
         fmt::format("implicit(p => {}, within: {}, lipschitz: {})\n", field, region, bound));
 }
 
-std::vector<Code> errors(const driver::Compilation &c) {
+std::vector<Code> error_codes(const driver::Compilation &c) {
     std::vector<Code> out;
     for (const Diagnostic &d : c.diagnostics.items())
         if (d.severity == Severity::Error) out.push_back(d.code);
@@ -41,11 +41,12 @@ TEST_CASE("a stated bound is refuted by a jump, however small and wherever it is
           "(if p.x > 1.5 and p.y > 0.4 { 1 } else { 0 })", "float(int(p.x * 2))"})
         for (const double size : {0.05, 0.005}) {
             INFO(jump << " by " << size);
-            CHECK(errors(stated(fmt::format("length(p) - 1 + {} * {}", size, jump), 1.5)) ==
+            CHECK(error_codes(stated(fmt::format("length(p) - 1 + {} * {}", size, jump), 1.5)) ==
                   std::vector<Code>{Code::LipschitzViolated});
         }
-    CHECK(errors(stated("length(p.xz) - 0.5 + 0.002 * atan(p.z, p.x)", 2,
-                        "ball(2) - tube(Y, 0.2)")) == std::vector<Code>{Code::LipschitzViolated});
+    CHECK(error_codes(
+              stated("length(p.xz) - 0.5 + 0.002 * atan(p.z, p.x)", 2, "ball(2) - tube(Y, 0.2)")) ==
+          std::vector<Code>{Code::LipschitzViolated});
 }
 
 TEST_CASE("a stated bound is refuted where the field is smooth and steeper") {
@@ -56,13 +57,13 @@ TEST_CASE("a stated bound is refuted where the field is smooth and steeper") {
              {"p.y - 0.1 * smoothstep(1.4, 1.45, p.x)", 2.5},
              {"length(p) - 1 + 0.3 * noise(2 * p)", 1.2}}) {
         INFO(field);
-        CHECK(errors(stated(field, steep)) == std::vector<Code>{Code::LipschitzViolated});
+        CHECK(error_codes(stated(field, steep)) == std::vector<Code>{Code::LipschitzViolated});
     }
 }
 
 TEST_CASE("a stated bound is refuted at an end of a param's range") {
-    CHECK(errors(compiled("param k = 0.5 in 0..3\nimplicit(p => (p.y - k * p.x) + 0 * " + unseen +
-                          ", within: ball(2), lipschitz: 2.5)\n")) ==
+    CHECK(error_codes(compiled("param k = 0.5 in 0..3\nimplicit(p => (p.y - k * p.x) + 0 * " +
+                               unseen + ", within: ball(2), lipschitz: 2.5)\n")) ==
           std::vector<Code>{Code::LipschitzViolated});
 }
 
@@ -74,7 +75,7 @@ TEST_CASE("what is proved to be no steeper than stated is proved") {
              {"0.5 * p.y", 4, 1}}) {
         INFO(field);
         const driver::Compilation c = stated(field, bound);
-        CHECK(errors(c).empty());
+        CHECK(error_codes(c).empty());
         CHECK(fact(c).status == ir::ProofStatus::Proved);
         CHECK(fact(c).lipschitz_sup <= found * (1 + 1e-6));
         CHECK(c.scene.axioms.size() == 0);
@@ -83,7 +84,7 @@ TEST_CASE("what is proved to be no steeper than stated is proved") {
 
 TEST_CASE("what is neither proved nor refuted is assumed") {
     const driver::Compilation c = stated("length(p) - 1 + " + unseen, 1.5);
-    CHECK(errors(c).empty());
+    CHECK(error_codes(c).empty());
     CHECK(fact(c).status == ir::ProofStatus::Assumed);
     CHECK(fact(c).lipschitz_sup == Approx(1.5));
     REQUIRE(c.scene.axioms.size() == 1);
@@ -95,6 +96,6 @@ TEST_CASE("what is neither proved nor refuted is assumed") {
           "smoothstep(0, 1, fract(p.x)))",
           "abs(fract(p.x) - 0.5)", "(if p.x > 0.3 { p.x } else { 0.3 })"}) {
         INFO(meets);
-        CHECK(errors(stated("0.3 * p.y + " + meets + " + 0.01 * " + unseen, 2.2)).empty());
+        CHECK(error_codes(stated("0.3 * p.y + " + meets + " + 0.01 * " + unseen, 2.2)).empty());
     }
 }
