@@ -249,10 +249,13 @@ void Prover::test_estimate(ShapeId id, NodeId field, double estimate) {
                            : "none of them is steep at all"));
 }
 
-// The ordinary search, of work of its own, so that a scene is not refused for what is not needed.
+// The ordinary search, of work of its own, so that no scene is refused for what is not needed.
 // Where that comes near the stated bound alone it is asked for just that.
 FieldBound Prover::bound_apart(NodeId field, const Place &here, double stated, bool own) {
-    const std::size_t all = work.left, most = std::min(leaf_work, all / 4);
+    const std::size_t all = work.left, most = std::min(leaf_work, spare_work);
+    FieldBound nothing;
+    nothing.lipschitz = ir::rounding::infinity;
+    if (most == 0) return nothing;
     work.left = most;
     FieldBound out = bound_once(field, here, own);
     constexpr double near = 1.1;
@@ -266,7 +269,8 @@ FieldBound Prover::bound_apart(NodeId field, const Place &here, double stated, b
         if (finer.lipschitz < out.lipschitz) out = finer;
     }
     const bool stopped = work.stop && work.stop->stopped();
-    work.left = stopped ? 0 : all - (most - work.left);
+    spare_work -= most - work.left;
+    work.left = stopped ? 0 : all;
     return out;
 }
 
@@ -297,7 +301,7 @@ void Prover::test_stated(ShapeId id, NodeId field, double stated, const FieldBou
     const Told holds = reads_of(tape);
     std::vector<Held> helds{Held::Middle};
     if (holds.params || holds.time) helds = {Held::Middle, Held::First, Held::Last};
-    const std::size_t most_work = std::min<std::size_t>(3'000'000, work.left / 8) / helds.size();
+    const std::size_t most_work = std::min<std::size_t>(3'000'000, spare_work / 4) / helds.size();
     for (const Held how : helds) {
         const Ranges one = held_at(tape, ranges, how);
         Machine machine(tape, one);
@@ -311,7 +315,11 @@ void Prover::test_stated(ShapeId id, NodeId field, double stated, const FieldBou
         if (longest.slope > top.slope) top = longest;
         bool jumps = false;
         if (!(top.slope > stated * refuting)) {
+            const std::size_t all = work.left, most = std::min(2 * most_work, spare_work);
+            work.left = most;
             top = by_turns(machine, ways, stated, found, most_work);
+            spare_work -= most - work.left;
+            work.left = work.stop && work.stop->stopped() ? 0 : all;
             if (!(top.slope > stated * refuting)) continue;
         }
         jumps = keeps_its_rise(machine, top);

@@ -44,6 +44,7 @@ struct Prover {
     std::deque<Zone> zones;            // stable addresses
     std::size_t leaf_instructions = 0; // of a field of one's own whose bound is loose, at most
     std::size_t leaf_work = 0;         // for trying to prove a bound that is stated, at most
+    std::size_t spare_work = 0;        // for all of these, beside `work`
     std::size_t deformed = 0;          // how many shapes are twisted, bent, tapered or distorted
     bool told_of_work = false;
 

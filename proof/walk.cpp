@@ -77,6 +77,7 @@ void Prover::run() {
     // Together they take an eighth of what the proof may.
     const std::size_t each = options.work / 8 / std::max<std::size_t>(leaves, 1);
     leaf_work = std::max(each, 2 * options.field_instructions);
+    spare_work = options.work / 4;
     leaf_instructions =
         options.field_instructions *
         std::min<std::size_t>(std::bit_floor(each / options.field_instructions), 16);
