@@ -1,6 +1,7 @@
 // Functions without a name as other languages write them, read as ours: `function(p) { … }`,
 // `lambda x, y: …`, `fun x -> …`, `\x -> …`, `|x| …`, `[](float x) { … }`. The words are put right
 // before layout, so that all behind them is read and only the one mistake is told.
+#include "lang/builder.h"
 #include "lang/token.h"
 
 #include <array>
@@ -135,13 +136,30 @@ class Lambdas {
         i = next - 1;
     }
 
+    // Rust's `f: fn(float) -> float`: the word goes, and what is behind it is a type of ours.
+    bool type_of_function(std::size_t i) {
+        if (kind(i) != Tok::Fn || !is_one_of(before(i), {Tok::Colon, Tok::Arrow}) ||
+            kind(i + 1) != Tok::Open)
+            return false;
+        const std::size_t close = close_of(i + 1);
+        if (close == 0 || kind(close + 1) != Tok::Arrow) return false;
+        for (std::size_t k = i + 2; k < close; ++k)
+            if (kind(k) == Tok::Name && !is_type_word(text(k))) return false;
+        begin_change(i);
+        const Span at = span(words_[i].begin, words_[i].end);
+        diagnostics_.add(Code::ForeignSyntax, at, "a function's type is written `(float) -> float`")
+            .help("leave `fn` away", {{at, ""}});
+        return true;
+    }
+
     // `function(p) { … }`, `function(x) x * x`, `fn(p) => …`; `lambda x, y: …`; `fun x y -> …`.
     bool by_word(std::size_t &i) {
         const bool ours = kind(i) == Tok::Fn;
         if (!ours && kind(i) != Tok::Name) return false;
-        if (!is_operand_place(before(i))) return false;
         const std::string_view word = text(i);
         const Span at = span(words_[i].begin, words_[i].end);
+        if (type_of_function(i)) return true;
+        if (!is_operand_place(before(i))) return false;
         if (word == "lambda" && kind(i + 1) == Tok::Colon && before(i) == Tok::Assign) {
             begin_change(i);
             const std::uint32_t end = words_[i + 1].end;

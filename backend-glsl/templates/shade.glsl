@@ -91,18 +91,18 @@ $else
 $end
             ++turn;
 $# What is touched is passed; so it has shaded nothing.
-            if (f < film && touches == 0) probes = 0;
-            float least = $PROBE * film;
-            float probe = max(least, min(least * exp2(float(f < film ? probes : probes - 1)), 0.5 * angle * s));
-            if (f < film) {
-                touches = f > 0.0 ? 1 : max(touches, 1) + 1;
-                s -= probe;
-                ++probes;
-                mark = false;
-                continue;
-            }
-            if (touches > 0) {
-                touches = 0;
+            if (f < film || touches > 0) {
+                bool on = f < film;
+                if (touches == 0) probes = 0;
+                float least = $PROBE * film;
+                float probe = max(least, min(least * exp2(float(on ? probes : probes - 1)), 0.5 * angle * s));
+                touches = on ? f > 0.0 ? 1 : max(touches, 1) + 1 : 0;
+                if (on) {
+                    s -= probe;
+                    ++probes;
+                    mark = false;
+                    continue;
+                }
                 if (f > $ACROSS * probe) {
                     shadow = clear;
                     at = clear_at;
