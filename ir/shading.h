@@ -155,8 +155,9 @@
 //       before s, not above s - (d - edge) and not above quiet
 //   PENUMBRA, where shadow < closed_from: the least of closed between the marks beside `at`, by
 //   penumbra_turns golden sections with the slope of `at`; at the least, closed is taken anew, with
-//   the slope there. So a penumbra depends on the solid alone: another bound makes other steps, but
-//   the same marks, and those that it passes over are not near enough.
+//   the slope there, and counts where it is below that of the mark. So a penumbra depends on the solid
+//   alone: another bound makes other steps, but the same marks, and those that it passes over are not
+//   near enough.
 //   shadow = min(shadow, 1), at least darkest; result: shadow^2*(3 - 2*shadow), less what it is at
 //   darkest and divided by 1 less that, so that what is nearly dark is dark, without a step
 //
@@ -194,7 +195,7 @@ inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.075f; // of half the height that is seen at the focus
 inline constexpr float nearly = 0.98f;
 inline constexpr int penumbra_turns = 7;
-inline constexpr float calm = 0.25f;
+inline constexpr float calm = 0.125f;
 inline constexpr float dark = 1.0f / 64;     // of what the light covers at s
 inline constexpr float darkest = 1.0f / 256; // of what is closed, but by what the way crosses
 inline constexpr float dark_light = darkest * darkest * (3 - 2 * darkest);

@@ -235,10 +235,7 @@ class Shadows {
         for (std::size_t j = 0; j < close_.size(); ++j)
             points[j] = place(close_[j].ray, close_[j].s);
         evaluate_at(points, values);
-        for (std::size_t j = 0; j < close_.size(); ++j) {
-            close_[j].d = values[j];
-            states_[close_[j].ray].shadow = shading::closed_from;
-        }
+        for (std::size_t j = 0; j < close_.size(); ++j) close_[j].d = values[j];
         look();
     }
 

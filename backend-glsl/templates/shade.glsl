@@ -203,7 +203,7 @@ $else
 $end
         float closed = near / (angle * x);
         if (search >= 0) {
-            shadow = closed;
+            shadow = min(shadow, closed);
             break;
         }
         quiet = x - $CALM * (min(near, value) - shadow * angle * x);
