@@ -144,8 +144,9 @@ double spectral_norm(const Row *rows, int count) {
 Machine::Machine(const Tape &tape, const Ranges &ranges, bool bends)
     : tape_(tape), ranges_(ranges), value_(tape.components), grad_(tape.components),
       odd_(tape.components), norm_(tape.first.size()), relative_(tape.first.size(), infinity),
-      bend_(bends ? tape.first.size() : 0), trouble_(tape.first.size(), Trouble::None),
-      cause_(tape.first.size()), pole_(tape.first.size()) {
+      raised_(tape.first.size()), bend_(bends ? tape.first.size() : 0),
+      trouble_(tape.first.size(), Trouble::None), cause_(tape.first.size()),
+      pole_(tape.first.size()) {
     in_reach_ = tape.grows;
     made_by_.assign(tape_.first.size(), -1);
     for (std::size_t i = 0; i < tape_.each.size(); ++i)
@@ -193,6 +194,7 @@ void Machine::know_nothing() {
                       Row{Interval::everything(), Interval::everything(), Interval::everything()});
     std::ranges::fill(norm_, infinity);
     std::ranges::fill(relative_, infinity);
+    std::ranges::fill(raised_, Raised());
     std::ranges::fill(bend_, infinity);
     result_norm_ = infinity;
     work_ += tape_.length() + 1;
@@ -217,6 +219,7 @@ void Machine::copy(Slot from, Slot to) {
     }
     norm_[to] = norm_[from];
     relative_[to] = relative_[from];
+    raised_[to] = raised_[from];
     if (!bend_.empty()) bend_[to] = bend_[from];
     trouble_[to] = trouble_[from];
     cause_[to] = cause_[from];
@@ -239,6 +242,7 @@ void Machine::join(Slot into, Slot other, bool jump, NodeId cause) {
         pole_[into] = pole_[other];
     }
     relative_[into] = jump ? infinity : std::max(relative_[into], relative_[other]);
+    raised_[into] = jump ? Raised() : either(raised_[into], raised_[other]);
     if (!bend_.empty()) bend_[into] = jump ? infinity : std::max(bend_[into], bend_[other]);
     if (jump && norm_[into] != infinity) {
         for (std::uint32_t i = 0; i < tape_.size[into]; ++i)
@@ -329,46 +333,22 @@ void Machine::finish(const Instruction &instruction, double rule, bool odd_used)
             rule = std::min(rule, up(times(instruction.norm, norm_[instruction.turned[0]]), 4));
     }
     const bool is_log = instruction.op == Op::Log || instruction.op == Op::Log2;
-    if (is_log && instruction.form == Form::Plain && rule < infinity)
+    if (is_log && instruction.form == Form::Plain &&
+        (rule < infinity || value(instruction.args[0], 0).lo >= min_single))
         rule = std::min(rule, up(times(instruction.op == Op::Log ? 1 : std::numbers::log2e,
                                        relative_[instruction.args[0]]),
                                  4));
+    if (std::isnan(rule)) rule = infinity;
     double box = 0;
     if (rule > 0) box = spectral_norm(&grad_[at], n);
-    norm_[s] = std::min(std::isnan(rule) ? infinity : rule, box);
-    relative_[s] = n == 1 && norm_[s] < infinity ? relative_norm(instruction) : infinity;
-    if (relative_[s] < infinity)
-        norm_[s] = std::min(norm_[s], up(times(relative_[s], value_[at].hi), 4));
+    norm_[s] = std::min(rule, box);
+    relative_[s] = relative_norm(instruction);
+    if (n == 1 && relative_[s] < infinity) hold_norm(s, up(times(relative_[s], value_[at].hi), 4));
+    hold_norm(s, norm_by_raised(instruction));
     trouble_[s] = Trouble::None;
     cause_[s] = NodeId();
     pole_[s] = 0;
     if (norm_[s] == infinity) fail(instruction, Trouble::Singular);
-}
-
-// |grad v| <= c v, v >= 0: of exp(u) with c the norm of u, of sums with the greater of both, of
-// products with the sum (docs/lipschitz.md, 2.16).
-double Machine::relative_norm(const Instruction &instruction) const {
-    const Slot s = instruction.out;
-    const Interval v = value_[tape_.first[s]];
-    if (v.lo < 0) return infinity;
-    if (norm_[s] == 0) return 0;
-    const auto of = [&](std::size_t i) { return relative_[instruction.args[i]]; };
-    constexpr ir::OpSet extremes{Op::Add, Op::Min, Op::Max}, products{Op::Mul, Op::Div};
-    const Op op = instruction.op;
-    double known = infinity;
-    if (instruction.form == Form::Square)
-        known = times(2, of(0));
-    else if (instruction.form != Form::Plain)
-        known = infinity;
-    else if (op == Op::Exp || op == Op::Exp2)
-        known = times(op == Op::Exp ? 1 : std::numbers::ln2, norm_[instruction.args[0]]);
-    else if (op == Op::Sqrt)
-        known = times(0.5, of(0));
-    else if (extremes[op])
-        known = std::max(of(0), of(1));
-    else if (products[op])
-        known = of(0) + of(1);
-    return std::min(up(known, 4), v.lo > 0 ? up(norm_[s] / v.lo, 4) : infinity);
 }
 
 Interval Machine::box_length(Slot s) const {

@@ -60,6 +60,15 @@ struct Distances {
 
 using Row = std::array<Interval, 3>;
 
+// A scalar base + w, or base - w where `negative`: base is the same at all points, w >= 0, and the
+// power-th root of w is no steeper than `slope` (machine_raised.cpp). A slope of infinity: not known.
+struct Raised {
+    double slope = ir::rounding::infinity, power = 2;
+    Interval base = 0.0;
+    bool negative = false;
+};
+Raised either(const Raised &a, const Raised &b); // what holds of both
+
 // A bound on the spectral norm of every matrix whose rows lie in `rows`.
 double spectral_norm(const Row *rows, int count);
 
@@ -163,6 +172,12 @@ class Machine {
     std::uint32_t origin(Slot s, int component) const;
     double component_norm(Slot s, int component) const;
     double relative_norm(const Instruction &instruction) const;
+    Raised raised(Slot s) const;
+    Raised raised(const Instruction &instruction) const;
+    Interval above_base(Slot s, const Raised &x) const;
+    double norm_of_inverse(Slot s, double e) const;
+    double norm_by_raised(const Instruction &instruction) const;
+    void hold_raised(const Instruction &instruction);
     std::optional<std::pair<std::uint32_t, std::uint32_t>> difference(Slot s, int c) const;
 
     const Tape &tape_;
@@ -179,6 +194,7 @@ class Machine {
     std::vector<std::uint8_t> odd_; // by component: may jump, but only from x to -x
     std::vector<double> norm_;      // by slot
     std::vector<double> relative_;  // by slot: of a scalar v >= 0, what |grad v| is at most, of v
+    std::vector<Raised> raised_;    // by slot
     std::vector<double> bend_;      // by slot, or none
     std::vector<Trouble> trouble_;
     std::vector<NodeId> cause_;

@@ -36,6 +36,7 @@ Step::Step(Machine &of, const Instruction &instruction)
 void Machine::step(const Instruction &instruction) {
     Step step(*this, instruction);
     step.run();
+    hold_raised(instruction);
     if (instruction.turning) hold_turning(instruction);
     if (instruction.mean) hold_mean(instruction);
     if (instruction.around) hold_around(instruction);
@@ -45,6 +46,7 @@ void Machine::step(const Instruction &instruction) {
     if (instruction.stands_at) {
         value_[tape_.first[instruction.out]] = *instruction.stands_at;
         relative_[instruction.out] = infinity; // it was that of another value
+        raised_[instruction.out] = {};
     }
     if (reads_values_) {
         step.read();

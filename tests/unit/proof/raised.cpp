@@ -1,0 +1,140 @@
+// Numbers and powers of Lipschitz functions (machine_raised.cpp): slopes at all points, which are not
+// exceeded and nearly reached, though the powers' own have no bound.
+#include "build.h"
+
+#include "tests/support/reference_eval.h"
+
+#include <catch2/catch.hpp>
+
+#include <functional>
+#include <random>
+
+using namespace fathom;
+using namespace fathom::test;
+
+namespace {
+
+struct Falling {
+    Scenery s;
+    Graph &g = s.g;
+    NodeId n(double x) { return g.number(x); }
+    NodeId square(NodeId v) { return g.make(Op::Dot, {v, v}); }
+    NodeId r2() { return square(s.p); }
+    NodeId inverse(NodeId of) { return g.div(n(1), of); }
+};
+
+struct FallingField {
+    const char *name;
+    std::function<NodeId(Falling &)> of;
+    double steepest;
+};
+const std::vector<FallingField> falling_fields{
+    {"a Gaussian", [](Falling &b) { return b.s.call(Op::Exp, b.g.neg(b.r2())); }, 0.857764},
+    {"of a narrow one, by a power of 2",
+     [](Falling &b) { return b.s.call(Op::Exp2, b.g.mul(b.n(-4), b.r2())); },
+     0.857764 * 2 * std::sqrt(std::log(2.0))},
+    {"raised by a number in the exponent",
+     [](Falling &b) { return b.s.call(Op::Exp, b.g.sub(b.n(1), b.g.div(b.r2(), b.n(0.25)))); },
+     0.857764 * 2 * std::exp(1.0)},
+    {"the inverse of 1 and a square", [](Falling &b) { return b.inverse(b.g.add(b.n(1), b.r2())); },
+     0.649519},
+    {"the inverse root of 4 and a square",
+     [](Falling &b) { return b.s.call(Op::InverseSqrt, b.g.add(b.r2(), b.n(4))); }, 0.3849 / 4},
+    {"a negative power",
+     [](Falling &b) {
+         return b.g.make(Op::Pow, {b.g.add(b.n(1), b.g.mul(b.s.x, b.s.x)), b.n(-1.5)});
+     },
+     0.858650},
+    {"the inverse of 1 and a fourth power",
+     [](Falling &b) {
+         const NodeId x2 = b.g.mul(b.s.x, b.s.x);
+         return b.inverse(b.g.add(b.g.mul(x2, x2), b.n(1)));
+     },
+     1.0651},
+    {"the logarithm of 1 and a square",
+     [](Falling &b) { return b.s.call(Op::Log, b.g.add(b.n(1), b.r2())); }, 1},
+    {"the root of a number and two squares",
+     [](Falling &b) {
+         const NodeId squares = b.g.add(b.g.mul(b.s.x, b.s.x), b.g.mul(b.s.z, b.s.z));
+         return b.s.call(Op::Sqrt, b.g.add(b.n(1), squares));
+     },
+     1},
+    {"two Gaussians far apart",
+     [](Falling &b) {
+         const NodeId q = b.g.sub(b.s.p, b.g.vec3(9, 0, 0));
+         return b.g.add(b.s.call(Op::Exp, b.g.neg(b.r2())),
+                        b.s.call(Op::Exp, b.g.neg(b.square(q))));
+     },
+     0.857764},
+};
+
+} // namespace
+
+TEST_CASE("what falls as a power grows has a slope at all points") {
+    for (const auto &[name, of, steepest] : falling_fields) {
+        INFO(name);
+        Falling b;
+        const proof::FieldBound found = b.s.bound(of(b));
+        CHECK(found.lipschitz >= steepest * 0.9999);
+        CHECK(found.lipschitz <= steepest * 1.1);
+    }
+}
+
+TEST_CASE("what grows as a power, or falls to where it is 0, has none") {
+    Falling b;
+    for (const NodeId field :
+         {b.s.call(Op::Exp, b.r2()), b.s.call(Op::Sqrt, b.g.add(b.n(1), b.g.mul(b.r2(), b.r2()))),
+          b.inverse(b.r2()), b.inverse(b.g.sub(b.n(1), b.r2())), b.inverse(b.g.add(b.s.x, b.n(1)))})
+        CHECK_FALSE(b.s.bound(field).lipschitz < 1e6);
+}
+
+TEST_CASE("no sum of what falls is steeper than proved, whatever it is made of") {
+    std::mt19937 random(7);
+    const auto any = [&](double lo, double hi) {
+        return std::uniform_real_distribution(lo, hi)(random);
+    };
+    for (int trial = 0; trial < 200; ++trial) {
+        Falling b;
+        Graph &g = b.g;
+        NodeId sum = b.n(0);
+        for (int i = 0; i < 3; ++i) {
+            const NodeId q = g.sub(b.s.p, g.vec3(any(-1, 1), any(-1, 1), any(-1, 1)));
+            const NodeId u = g.component(q, 0), v = g.component(q, 1);
+            const NodeId turned = g.add(g.mul(b.n(any(-2, 2)), u), g.mul(b.n(any(-2, 2)), v));
+            NodeId w = any(0, 1) < 0.5 ? b.square(q) : g.mul(turned, turned);
+            if (any(0, 1) < 0.3) w = g.add(w, g.mul(v, v));
+            if (any(0, 1) < 0.3) w = g.mul(w, w);
+            w = g.mul(b.n(any(0.1, 4)), w);
+            const NodeId up = g.add(w, b.n(any(0.05, 2)));
+            const std::array falls{
+                b.inverse(up),
+                g.div(g.component(q, 2), g.mul(up, up)),
+                g.div(b.s.sin(g.mul(b.n(3), u)), up),
+                b.s.call(Op::Exp, g.sub(b.n(any(-1, 1)), w)),
+                b.s.call(Op::Log, up),
+                g.make(Op::Pow, {up, b.n(any(-3, -0.2))}),
+            };
+            sum = g.add(sum, g.mul(b.n(any(-1, 1)), falls[std::size_t(any(0, 5.999))]));
+        }
+        const double bound = b.s.bound(sum, cube(3)).lipschitz;
+        INFO(trial);
+        REQUIRE(bound < 1e6);
+        Reference reference(b.s.scene);
+        const auto value = [&](const std::array<double, 3> &at) {
+            reference.point = at;
+            return reference.number(sum);
+        };
+        double steepest = 0;
+        for (int k = 0; k < 400; ++k) {
+            const std::array<double, 3> at{any(-3, 3), any(-3, 3), any(-3, 3)};
+            double squares = 0;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                auto lo = at, hi = at;
+                lo[axis] -= 1e-5, hi[axis] += 1e-5;
+                squares += std::pow((value(hi) - value(lo)) / 2e-5, 2);
+            }
+            steepest = std::max(steepest, std::sqrt(squares));
+        }
+        CHECK(steepest <= bound * (1 + 1e-6));
+    }
+}
