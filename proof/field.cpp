@@ -197,6 +197,11 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, const Tape &t
     };
     const bool asks_ways = holds_choices(tape);
     push(whole, 0, first_ways);
+    if (tape.grows) { // where rays go, what leaves single precision has no bound, whatever a rule says
+        Cell near = whole;
+        for (Interval &x : near.p) x = meet(x, Interval(-in_reach, in_reach));
+        if (near.p != whole.p) push(near, 0, first_ways);
+    }
     double settled = 0; // of cells that cannot be cut any more
     Interval settled_value{infinity, -infinity};
     std::size_t limit = std::max(budget.instructions, 200 * tape.length());

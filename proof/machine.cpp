@@ -155,12 +155,12 @@ Machine::Machine(const Tape &tape, const Ranges &ranges, bool bends)
 }
 
 void Machine::reach(const Cell &cell) {
-    constexpr double far = 1e6; // further off whatever grows has left single precision
     cell_ = cell;
     near_ =
         std::ranges::all_of(cell.p, [](const Interval &x) { return x.magnitude() <= near_enough; });
-    in_reach_ = tape_.grows && std::all_of(cell.p.begin(), cell.p.end(),
-                                           [](const Interval &x) { return x.magnitude() <= far; });
+    in_reach_ = tape_.grows && std::all_of(cell.p.begin(), cell.p.end(), [](const Interval &x) {
+                    return x.magnitude() <= in_reach;
+                });
 }
 
 void Machine::run(const Cell &cell) {
@@ -348,7 +348,8 @@ void Machine::finish(const Instruction &instruction, double rule, bool odd_used)
     trouble_[s] = Trouble::None;
     cause_[s] = NodeId();
     pole_[s] = 0;
-    if (norm_[s] == infinity) fail(instruction, Trouble::Singular);
+    const double relative = relative_[s]; // may be known though the slope has no bound
+    if (norm_[s] == infinity) fail(instruction, Trouble::Singular), relative_[s] = relative;
 }
 
 Interval Machine::box_length(Slot s) const {

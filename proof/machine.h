@@ -44,6 +44,9 @@ struct Ranges {
 // Reads the images and grids, which takes steps off `work`.
 Ranges ranges_of(const ir::Scene &scene, Work &work, const std::optional<Interval> &times = {});
 
+// How far rays go: further off whatever grows has left single precision.
+constexpr double in_reach = 1e6;
+
 enum class Trouble : std::uint8_t { None, Jump, Singular, Overflow };
 
 struct Cell {
@@ -61,7 +64,8 @@ struct Distances {
 using Row = std::array<Interval, 3>;
 
 // A scalar base + w, or base - w where `negative`: base is the same at all points, w >= 0, and the
-// power-th root of w is no steeper than `slope` (machine_raised.cpp). A slope of infinity: not known.
+// power-th root of w is no steeper than `slope`; of a power of infinity |grad w| <= slope w
+// (machine_raised.cpp). A slope of infinity: not known.
 struct Raised {
     double slope = ir::rounding::infinity, power = 2;
     Interval base = 0.0;
@@ -172,7 +176,14 @@ class Machine {
     std::uint32_t origin(Slot s, int component) const;
     double component_norm(Slot s, int component) const;
     double relative_norm(const Instruction &instruction) const;
+    struct Monomial { // by of^degree
+        Interval by;
+        Slot of;
+        int degree;
+    };
+    Monomial monomial(Slot s, int depth = 0) const;
     Raised raised(Slot s) const;
+    Raised raised_to(Slot u, double power) const;
     Raised raised(const Instruction &instruction) const;
     Interval above_base(Slot s, const Raised &x) const;
     double norm_of_inverse(Slot s, double e) const;

@@ -15,18 +15,25 @@ using ir::rounding::up;
 namespace {
 
 double root_of(double x, double power) {
+    if (power == infinity) return 1;
     return power == 2 ? up(std::sqrt(x)) : up(std::pow(x, 1 / power), 4);
 }
 
-// The greatest (power w^(1 - 1/power)) e^-w for these w: it rises up to w = 1 - 1/power, then falls.
+// What |grad w| is at most, of the slope: power w^(1 - 1/power), or w.
+double growth(double power, double w) {
+    return power == infinity ? w : power * std::pow(w, 1 - 1 / power);
+}
+// The greatest growth times e^-w for these w: it rises up to w = 1 - 1/power, then falls.
 double steepest_decay(double power, Interval of) {
     const double w = std::clamp(1 - 1 / power, of.lo, of.hi);
-    return up(power * std::pow(w, 1 - 1 / power) * std::exp(-w), 32);
+    return up(growth(power, w) * std::exp(-w), 32);
 }
-// … and over (m + w)^e, m > 0, e >= 1, which rises up to w = m (1 - 1/power) / (e - 1 + 1/power).
+// … and over (m + w)^e, m + w > 0, e >= 1, which rises up to w = m (1 - 1/power) / (e - 1 + 1/power).
 double steepest_share(double power, double m, double e, Interval of) {
+    if (power == infinity && e == 1) return 1;
     const double w = std::clamp(m * (1 - 1 / power) / (e - 1 + 1 / power), of.lo, of.hi);
-    return up(power * std::pow(w, 1 - 1 / power) / std::pow(m + w, e), 32);
+    if (!(m + w > 0)) return infinity;
+    return up(growth(power, w) / std::pow(m + w, e), 32);
 }
 
 Raised multiple(Raised x, Interval by) {
@@ -81,6 +88,35 @@ Raised Machine::raised(Slot s) const {
     return raised_[s];
 }
 
+// A number times a power of a value, as it is written: `-p.x*p.x`, `3*(r*r)*r`.
+Machine::Monomial Machine::monomial(Slot s, int depth) const {
+    const Monomial itself{1.0, s, 1};
+    if (norm_[s] == 0) return {value(s, 0), s, 0};
+    if (made_by_[s] < 0 || depth > 8) return itself;
+    const Instruction &made = tape_.each[std::size_t(made_by_[s])];
+    if (tape_.size[s] != 1 || made.args.empty()) return itself;
+    const bool square = made.form == Form::Square;
+    constexpr ir::OpSet known{Op::Neg, Op::Mul, Op::Div};
+    if (!square && (made.form != Form::Plain || !known[made.op])) return itself;
+    Monomial a = monomial(made.args[0], depth + 1);
+    if (square) return {ir::square(a.by), a.of, 2 * a.degree};
+    if (made.op == Op::Neg) return {-a.by, a.of, a.degree};
+    const Monomial b = monomial(made.args[1], depth + 1);
+    if (made.op == Op::Div)
+        return b.degree == 0 && !b.by.contains(0) ? Monomial{a.by / b.by, a.of, a.degree} : itself;
+    if (a.degree > 0 && b.degree > 0 && a.of != b.of) return itself;
+    return {a.by * b.by, a.degree > 0 ? a.of : b.of, a.degree + b.degree};
+}
+
+Raised Machine::raised_to(Slot u, double power) const {
+    const Raised inner = raised(u);
+    const bool known = inner.slope < infinity && inner.power > 0;
+    if (known && inner.base == Interval(0.0) && !inner.negative)
+        return {inner.power == infinity ? up(power * inner.slope) : inner.slope,
+                power * inner.power};
+    return norm_[u] < infinity ? Raised{norm_[u], power} : Raised();
+}
+
 // Powers, and sums and multiples of them.
 Raised Machine::raised(const Instruction &instruction) const {
     const Slot out = instruction.out;
@@ -89,27 +125,14 @@ Raised Machine::raised(const Instruction &instruction) const {
     const Slot a = instruction.args.empty() ? out : instruction.args[0],
                b = instruction.args.size() < 2 ? a : instruction.args[1];
     const Op op = instruction.op;
-    const auto power_of = [&](Slot u, double power) -> Raised {
-        const Raised inner = raised(u);
-        if (inner.slope < infinity && inner.power > 0 && inner.base == Interval(0.0) &&
-            !inner.negative)
-            return {inner.slope, power * inner.power};
-        return norm_[u] < infinity ? Raised{norm_[u], power} : Raised();
-    };
-    if (instruction.form == Form::Square) return power_of(a, 2);
-    if (instruction.univariate) { // u*u*u*u, perhaps times a number
-        const auto &[of, by] = *instruction.univariate;
-        const std::size_t n = by.size() - 1;
-        const bool alone = std::ranges::count(by, 0) == std::ptrdiff_t(n) && by[n] != 0;
-        if (alone && n >= 2 && n % 2 == 0) return multiple(power_of(of, double(n)), by[n]);
-    }
+    if (instruction.form == Form::Square) return raised_to(a, 2);
     if (instruction.form != Form::Plain) return {};
     if (op == Op::Dot) return a == b && norm_[a] < infinity ? Raised{norm_[a], 2} : Raised();
     if (op == Op::Pow) {
         const Interval exponent = value(b, 0);
         const bool even = std::fmod(exponent.lo, 2) == 0 && exponent.lo <= 64;
         if (norm_[b] != 0 || !exponent.is_point() || !(exponent.lo >= 2)) return {};
-        return even || value(a, 0).lo >= 0 ? power_of(a, exponent.lo) : Raised();
+        return even || value(a, 0).lo >= 0 ? raised_to(a, exponent.lo) : Raised();
     }
     if (op == Op::Neg) {
         Raised x = raised(a);
@@ -123,22 +146,43 @@ Raised Machine::raised(const Instruction &instruction) const {
         const Interval base = x.base + y.base;
         if (y.slope == 0) return {x.slope, x.power, base, x.negative};
         if (x.power != y.power || x.negative != y.negative) return {};
-        const double q = x.power, sum = std::pow(x.slope, q) + std::pow(y.slope, q);
+        const double q = x.power, most = std::max(x.slope, y.slope);
+        if (q == infinity) return {most, q, base, x.negative};
+        const double sum = std::pow(x.slope, q) + std::pow(y.slope, q);
         const Step step(const_cast<Machine &>(*this), instruction);
         const bool apart = (step.axes(0) & step.axes(1)) == 0 || step.in_other_group(1, 0);
-        return {apart && q == 2 ? std::max(x.slope, y.slope) : root_of(up(sum, 16), q), q, base,
-                x.negative};
+        return {apart && q == 2 ? most : root_of(up(sum, 16), q), q, base, x.negative};
     }
     if (op == Op::Mul || op == Op::Div) {
         const bool first = op == Op::Mul && norm_[a] == 0;
         const Raised x = raised(first ? b : a);
         Interval by = value(first ? a : b, 0);
-        if (norm_[first ? a : b] != 0) return {};
+        if (norm_[first ? a : b] != 0) {
+            const Monomial m = monomial(out);
+            const bool even = m.degree >= 2 && m.degree % 2 == 0;
+            return even ? multiple(raised_to(m.of, m.degree), m.by) : Raised();
+        }
         if (op == Op::Div) {
             if (by.contains(0)) return {};
             by = Interval(1.0) / by;
         }
         return multiple(x, by);
+    }
+    // of v and a number that v's other side of `base` does not reach
+    if ((op == Op::Min || op == Op::Max) && (norm_[a] == 0 || norm_[b] == 0)) {
+        const Raised x = raised(norm_[a] == 0 ? b : a);
+        const Interval k = value(norm_[a] == 0 ? a : b, 0);
+        const bool keeps = (op == Op::Min) == x.negative;
+        return keeps || (x.negative ? k.hi <= x.base.lo : k.lo >= x.base.hi) ? x : Raised();
+    }
+    if (op == Op::Clamp) {
+        const Slot lo = b, hi = instruction.args[2];
+        const Raised x = raised(a);
+        const Slot far =
+            x.negative ? lo : hi; // the other one keeps w as it is, or makes it greater
+        const bool reached =
+            x.negative ? value(far, 0).hi <= x.base.lo : value(far, 0).lo >= x.base.hi;
+        return norm_[lo] == 0 && norm_[hi] == 0 && reached ? x : Raised();
     }
     return {};
 }
@@ -152,7 +196,7 @@ Interval Machine::above_base(Slot s, const Raised &x) const {
 // Of v^-e for such a v.
 double Machine::norm_of_inverse(Slot s, double e) const {
     const Raised x = raised(s);
-    if (x.slope == infinity || x.power == 0 || x.negative || !(x.base.lo > 0)) return infinity;
+    if (x.slope == infinity || x.power == 0 || x.negative || !(x.base.lo >= 0)) return infinity;
     return up(times(e * x.slope, steepest_share(x.power, x.base.lo, e + 1, above_base(s, x))), 8);
 }
 
@@ -182,7 +226,9 @@ void Machine::hold_raised(const Instruction &instruction) {
     const Slot out = instruction.out;
     Raised &x = raised_[out];
     x = raised(instruction);
-    if (x.slope == infinity || x.slope == 0 || x.negative || !(x.base.lo > 0)) return;
+    if (x.slope == infinity && tape_.size[out] == 1 && relative_[out] < infinity)
+        x = {relative_[out], infinity};
+    if (x.slope == infinity || x.slope == 0 || x.negative || !(x.base.lo >= 0)) return;
     relative_[out] =
         std::min(relative_[out],
                  up(times(x.slope, steepest_share(x.power, x.base.lo, 1, above_base(out, x))), 8));

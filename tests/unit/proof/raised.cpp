@@ -59,6 +59,15 @@ const std::vector<FallingField> falling_fields{
          return b.s.call(Op::Sqrt, b.g.add(b.n(1), squares));
      },
      1},
+    {"a sigmoid",
+     [](Falling &b) {
+         const NodeId e = b.s.call(Op::Exp, b.g.mul(b.n(-4), b.s.x));
+         return b.inverse(b.g.add(b.n(1), e));
+     },
+     1},
+    {"the exponential of an exponential",
+     [](Falling &b) { return b.s.call(Op::Exp, b.g.neg(b.s.call(Op::Exp, b.s.x))); },
+     std::exp(-1.0)},
     {"two Gaussians far apart",
      [](Falling &b) {
          const NodeId q = b.g.sub(b.s.p, b.g.vec3(9, 0, 0));
@@ -137,4 +146,35 @@ TEST_CASE("no sum of what falls is steeper than proved, whatever it is made of")
         }
         CHECK(steepest <= bound * (1 + 1e-6));
     }
+}
+
+TEST_CASE("what a number keeps off 0, or is written in another order, falls as well") {
+    Falling b;
+    Graph &g = b.g;
+    const NodeId x = b.s.x;
+    const auto bound = [&](NodeId field) { return b.s.bound(field).lipschitz; };
+    CHECK(bound(b.s.call(Op::Exp, g.mul(g.neg(x), x))) < 0.86);
+    CHECK(bound(b.s.call(Op::Exp, g.mul(g.mul(b.n(-2), x), x))) < 1.22);
+    CHECK(bound(b.s.call(Op::Exp, g.div(g.mul(x, g.neg(x)), b.n(4)))) < 0.43);
+    // 1/max(r*r, 1/4) is steepest at r = 1/2
+    CHECK(bound(b.inverse(g.make(Op::Max, {b.r2(), b.n(0.25)}))) == Approx(16).epsilon(0.06));
+    CHECK(bound(b.inverse(g.make(Op::Clamp, {b.r2(), b.n(0.25), b.n(4)}))) ==
+          Approx(16).epsilon(0.06));
+    // min(r*r, -1) is -1, and no square: the exponential of what is below is no steeper for it
+    const NodeId below = g.make(Op::Min, {b.r2(), b.n(-1)});
+    CHECK(bound(g.add(below, b.s.call(Op::Exp, g.neg(b.r2())))) < 0.87);
+}
+
+TEST_CASE("what leaves single precision where rays go has no bound, though its slope has one") {
+    Falling b;
+    Graph &g = b.g;
+    const auto softplus = [&](double rate) {
+        const NodeId e = b.s.call(Op::Exp, g.mul(b.n(rate), b.s.x));
+        return g.div(b.s.call(Op::Log, g.add(b.n(1), e)), b.n(rate));
+    };
+    const proof::FieldBound everywhere = b.s.bound(softplus(3)),
+                            nearby = b.s.bound(softplus(3), cube(10));
+    CHECK_FALSE(everywhere.lipschitz < 1e6);
+    CHECK(everywhere.trouble == proof::Trouble::Overflow);
+    CHECK(nearby.lipschitz == Approx(1).epsilon(0.05));
 }
