@@ -143,9 +143,7 @@
 //     the budget is spent: undecided; it counts as what it is so far
 //     d = f(q + s*l)
 //     if d < -slack(s)/4, or estimate*d < dark*angle*s (ESTIMATES): all dark, done
-//     if d < slack(s)/4: TOUCHES, as for rays from the eye, by steps of at most angle*s/2. What is passed
-//       and not grazed (d above `across` times such a step) has shaded nothing: shadow and `at` are
-//       again what they were where d >= closed_from*angle*s last, and quiet = s*(1 - beyond*angle)
+//     if d < slack(s)/4: TOUCHES, as for rays from the eye, by steps of at most angle*s/2
 //     edge = shadow*angle*s: what is farther changes nothing
 //     if s is a mark, d < edge and s <= quiet: closed(s).
 //       quiet = s - calm*(min(near, g) - edge): what is so much farther than the edge is not looked at
@@ -158,6 +156,13 @@
 //   the slope there, and counts where it is below that of the mark. So a penumbra depends on the solid
 //   alone: another bound makes other steps, but the same marks, and those that it passes over are not
 //   near enough.
+//   FILMS: what covers a part of the light may be a film (TOUCHES), which shades nothing. In a scene
+//     that may have some (`Frame::films`), where 0 < shadow < closed_from at the end: from p at `at`,
+//     at most film_steps times, by g/|gradient(p, shadow_arm*g)| along -gradient, until |g| <
+//     film_near*slack(s)/4. Then g is looked at film_looks times on a circle of radius
+//     film_look*slack(s)/4 about that place, across the way. If it is below -slack(s)/4 at none of
+//     them, that is a film (or an edge sharper than film_turn). Then the way is gone anew, and where
+//     closed is less, at a mark and at the least between marks, this is tried: a film does not count.
 //   shadow = min(shadow, 1), at least darkest; result: shadow^2*(3 - 2*shadow), less what it is at
 //   darkest and divided by 1 less that, so that what is nearly dark is dark, without a step
 //
@@ -199,7 +204,6 @@ inline constexpr float calm = 0.125f;
 inline constexpr float dark = 1.0f / 64;     // of what the light covers at s
 inline constexpr float darkest = 1.0f / 256; // of what is closed, but by what the way crosses
 inline constexpr float dark_light = darkest * darkest * (3 - 2 * darkest);
-inline constexpr float beyond = 4;         // lights' sizes from a touch, where marks count again
 inline constexpr float shadow_arm = 0.35f; // of the field's value beside a shadow ray
 inline constexpr float marks = 0.5f, closed_from = 1.0625f; // of what the light covers at s
 inline constexpr float jump = 2, graze = 1.0f / 16;         // tolerances
@@ -207,10 +211,14 @@ inline constexpr int refinements = 12;
 inline constexpr float refined = 1.0f / 2048; // of a tolerance
 inline constexpr float across = 1.0f / 32; // the slope behind a touch, from which on it is no graze
 inline constexpr float probe = 8;          // slack/4: the first step beyond what is touched
-inline constexpr int deep = 2;             // touches not above 0 that are a solid, one less
-inline constexpr int nearing = 3;          // samples, by which an estimate is hit
-inline constexpr int many_steps = 256;     // red in a picture of steps
-inline constexpr int budget = 65536;       // evaluations a ray, where the scene does not say
+inline constexpr int film_steps = 4;       // to what may be a film
+inline constexpr float film_near = 8, film_look = 64; // slack/4
+inline constexpr int film_looks = 24;                 // on a circle,
+inline constexpr float film_turn = 0.261799388f;      // so far apart
+inline constexpr int deep = 2;         // touches not above 0 that are a solid, one less
+inline constexpr int nearing = 3;      // samples, by which an estimate is hit
+inline constexpr int many_steps = 256; // red in a picture of steps
+inline constexpr int budget = 65536;   // evaluations a ray, where the scene does not say
 inline constexpr float shadow_bias = 4;
 inline constexpr float min_angle = 0.002f; // a hard shadow's edge, soft enough not to flicker
 inline constexpr std::array<float, 3> background{0.35f, 0.45f, 0.6f};

@@ -22,8 +22,7 @@ struct State {
     float quiet = 1e30f;                 // from where on it is looked at again
     int touches = 0;                     // as Walk::touches
     int probes = 0;                      // steps of the touch
-    float clear = shading::closed_from;  // shadow, at and slope where it was last
-    float clear_at = 0, clear_slope = 1; // clear of everything
+    bool careful = false;                // a film is on the way: each mark is tried for one
 };
 
 class Shadows {
@@ -35,8 +34,15 @@ class Shadows {
     }
 
     void run(std::span<float> lit) {
-        march();
-        find_penumbrae();
+        std::vector<std::size_t> all(rays_.size());
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        march(all);
+        find_penumbrae(all);
+        if (worker_.stage.frame.films) {
+            begin_anew(all);
+            march(all);
+            find_penumbrae(all);
+        }
         for (std::size_t i = 0; i < rays_.size(); ++i) {
             const float shadow = std::clamp(states_[i].shadow, shading::darkest, 1.0f);
             lit[i] = (shadow * shadow * (3.0f - 2.0f * shadow) - shading::dark_light) /
@@ -47,10 +53,8 @@ class Shadows {
   private:
     Vec place(std::size_t ray, float s) const { return rays_[ray].from + s * rays_[ray].towards; }
 
-    void march() {
+    void march(std::vector<std::size_t> active) {
         const int budget = worker_.stage.budget;
-        std::vector<std::size_t> active(rays_.size());
-        std::iota(active.begin(), active.end(), std::size_t{0});
         for (int turn = 0;; ++turn) {
             std::erase_if(active, [&](std::size_t i) { return !(states_[i].s > rays_[i].margin); });
             if (active.empty()) return;
@@ -119,11 +123,6 @@ class Shadows {
         }
         if (state.touches > 0) {
             state.touches = 0;
-            if (!(d > shading::across * probe(state.probes - 1, film, light))) return d;
-            state.shadow = state.clear, state.at = state.clear_at, state.slope = state.clear_slope;
-            state.quiet = state.s * (1 - shading::beyond * angle_);
-        } else if (d >= shading::closed_from * light) {
-            state.clear = state.shadow, state.clear_at = state.at, state.clear_slope = state.slope;
         }
         return d;
     }
@@ -142,17 +141,42 @@ class Shadows {
         return gap * std::min(std::floor(to / gap), std::ceil(state.s / gap) - 1);
     }
 
+    // Keeps those that a film may have shaded, as they were at first, but for being careful.
+    void begin_anew(std::vector<std::size_t> &rays) {
+        std::erase_if(rays, [&](std::size_t i) {
+            return !(states_[i].shadow > 0 && states_[i].shadow < shading::closed_from);
+        });
+        close_.clear();
+        for (std::size_t i : rays) close_.push_back({i, states_[i].at, 0});
+        std::vector<Vec> points(rays.size());
+        for (std::size_t j = 0; j < rays.size(); ++j) points[j] = place(rays[j], close_[j].s);
+        std::vector<float> values;
+        evaluate_at(points, values);
+        for (std::size_t j = 0; j < rays.size(); ++j) close_[j].d = values[j];
+        measure();
+        find_films([](std::size_t) { return true; });
+        for (std::size_t j = 0; j < close_.size(); ++j)
+            if (on_film_[j])
+                states_[close_[j].ray] = {.s = rays_[close_[j].ray].reach, .careful = true};
+        std::erase_if(rays, [&](std::size_t i) { return !states_[i].careful; });
+    }
+
     // Where something may cover the light, the true distance decides.
     void look() {
         if (close_.empty()) return;
         measure();
+        const auto closed_at = [&](std::size_t j) { return near_[j] / (angle_ * close_[j].s); };
+        find_films([&](std::size_t j) {
+            const State &state = states_[close_[j].ray];
+            return state.careful && closed_at(j) < state.shadow;
+        });
         for (std::size_t j = 0; j < close_.size(); ++j) {
             const Close &close = close_[j];
             State &state = states_[close.ray];
-            const float closed = near_[j] / (angle_ * close.s);
+            const float closed = closed_at(j);
             state.quiet = close.s - shading::calm * (std::min(near_[j], values_[j]) -
                                                      state.shadow * angle_ * close.s);
-            if (closed < state.shadow) {
+            if (closed < state.shadow && !on_film_[j]) {
                 state.shadow = std::max(closed, shading::darkest);
                 state.at = close.s;
                 state.slope = values_[j] > 0 ? values_[j] / near_[j] : 1.0f;
@@ -174,20 +198,68 @@ class Shadows {
             arms_[j] = std::max(arms_[j], shading::shadow_arm * values_[j]);
         near(worker_, points_.data(), values_.data(), arms_.data(), near_.data(), n);
     }
+    // Of these of what is close: whether it is a film (shading.h, FILMS).
+    template <class Which> void find_films(Which which) {
+        on_film_.assign(close_.size(), 0);
+        std::vector<Approach> ways;
+        for (std::size_t j = 0; j < close_.size(); ++j)
+            if (which(j))
+                ways.push_back({j, 0.25f * lengths_.slack_at(close_[j].s), points_[j], values_[j]});
+        std::vector<Approach> touching;
+        std::vector<Vec> at, slopes;
+        std::vector<float> arms, values;
+        for (int step = 0;; ++step) {
+            for (const Approach &way : ways)
+                if (std::fabs(way.g) < shading::film_near * way.film) touching.push_back(way);
+            std::erase_if(ways, [](const Approach &way) {
+                return !(way.g >= shading::film_near * way.film);
+            });
+            if (step == shading::film_steps || ways.empty()) break;
+            at.clear(), arms.clear(), slopes.resize(ways.size());
+            for (const Approach &way : ways) {
+                at.push_back(way.at);
+                arms.push_back(shading::shadow_arm * way.g);
+            }
+            gradients(worker_, at.data(), arms.data(), slopes.data(), ways.size());
+            for (std::size_t k = 0; k < ways.size(); ++k) {
+                const float slope = std::max(length(slopes[k]), shading::min_slope);
+                at[k] = ways[k].at -= ways[k].g / (slope * slope) * slopes[k];
+            }
+            evaluate_at(at, values);
+            for (std::size_t k = 0; k < ways.size(); ++k) ways[k].g = values[k];
+        }
+        for (int turn = 0; turn < shading::film_looks && !touching.empty(); ++turn) {
+            const float angle = shading::film_turn * static_cast<float>(turn);
+            at.clear();
+            for (const Approach &way : touching) {
+                const Vec l = rays_[close_[way.close].ray].towards;
+                const Vec side = glm::normalize(
+                    std::fabs(l.x) < 0.6f ? Vec(0, l.z, -l.y) : Vec(-l.z, 0, l.x)); // across l
+                at.push_back(way.at +
+                             shading::film_look * way.film *
+                                 (std::cos(angle) * side + std::sin(angle) * glm::cross(l, side)));
+            }
+            evaluate_at(at, values);
+            for (std::size_t k = 0; k < touching.size(); ++k) touching[k].g = values[k];
+            std::erase_if(touching, [](const Approach &way) { return !(way.g >= -way.film); });
+        }
+        for (const Approach &way : touching) on_film_[way.close] = 1;
+    }
+
     void evaluate_at(const std::vector<Vec> &points, std::vector<float> &out) {
         out.resize(points.size());
         for (std::size_t j = 0; j < points.size(); ++j) worker_.points.set(0, j, points[j]);
         shaded_values(worker_, worker_.points, out.data(), points.size());
     }
 
-    void find_penumbrae() {
+    void find_penumbrae(const std::vector<std::size_t> &rays) {
         constexpr float golden = 0.618033989f;
         struct Search {
             std::size_t ray;
             float lo, hi, a, b, at_a, at_b; // a < b, in between
         };
         std::vector<Search> searches;
-        for (std::size_t i = 0; i < rays_.size(); ++i) {
+        for (std::size_t i : rays) {
             const State &state = states_[i];
             if (!(state.shadow > shading::darkest && state.shadow < shading::closed_from)) continue;
             const float gap = spacing(state.at);
@@ -243,6 +315,12 @@ class Shadows {
         std::size_t ray;
         float s, d;
     };
+    struct Approach { // to what is close
+        std::size_t close;
+        float film;
+        Vec at;
+        float g;
+    };
 
     Worker &worker_;
     std::span<const ShadowRay> rays_;
@@ -252,6 +330,7 @@ class Shadows {
     std::vector<Close> close_;
     std::vector<Vec> points_;
     std::vector<float> next_, arms_, values_, near_;
+    std::vector<char> on_film_; // as close_
 };
 
 } // namespace

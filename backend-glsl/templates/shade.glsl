@@ -12,15 +12,75 @@ float fathom_mark(float s, float d, float edge, float quiet, float angle) {
     return gap * min(floor(min(s - (d - edge), quiet) / gap), ceil(s / gap) - 1.0);
 }
 
+$if FILMS
+// Whether what is nearest to p is a film, which has no inside (FILMS). It is touched below `thick`; the ray goes along l.
+bool fathom_film(vec3 p, vec3 l, float thick) {
+    vec3 side = normalize(abs(l.x) < 0.6 ? vec3(0.0, l.z, -l.y) : vec3(-l.z, 0.0, l.x));
+    vec3 sum = vec3(0.0), around = vec3(0.0);
+    float g = 0.0, arm = 0.0;
+    int step = 0, tap = -1, look = -1; // of a gradient, -1: the field itself; of the circle, -1: not there yet
+    for (int i = $ZERO; i < 5 * $FILM_STEPS + 1 + $FILM_LOOKS; ++i) {
+$if AROUND
+        fathom_exact = true;
+$end
+        float f = $SHADED(p + around);
+$if AROUND
+        fathom_exact = false;
+$end
+$if CACHED
+        if (fathom_absent) return false;
+$end
+        if (look >= 0) {
+            if (!(f >= -thick)) return false;
+            ++look;
+            if (look == $FILM_LOOKS) return true;
+        }
+        if (look < 0 && tap >= 0) {
+            sum += f * fathom_corner(tap);
+            ++tap;
+            around = arm * fathom_corner(tap & 3);
+            if (tap == 4) {
+                sum *= 0.75 / arm;
+                p -= g / max(dot(sum, sum), $MIN_SLOPE * $MIN_SLOPE) * sum;
+                around = vec3(0.0);
+                tap = -1;
+                continue;
+            }
+        }
+        if (look < 0 && tap < 0) {
+            g = f;
+            if (!(g > -$FILM_NEAR * thick)) return false;
+            if (g < $FILM_NEAR * thick) look = 0;
+            if (look < 0 && step == $FILM_STEPS) return false;
+            if (look < 0) {
+                ++step;
+                tap = 0;
+                arm = $SHADOW_ARM * g;
+                sum = vec3(0.0);
+                around = arm * fathom_corner(0);
+            }
+        }
+        if (look >= 0) {
+            float angle = $FILM_TURN * float(look);
+            around = $FILM_LOOK * thick * (cos(angle) * side + sin(angle) * cross(l, side));
+        }
+    }
+    return false;
+}
+
+$end
 // How much of a light arrives: marched from the light towards the point (thesis, 4.2.1).
 float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, float h) {
     float s = reach; // what is left of the way
     bool mark = false; // whether s is one of the marks
     float shadow = $CLOSED_FROM, at = 0.0; // the least of `closed` at them so far, and where
     float quiet = 1e30; // from where on marks are looked at again
-    float clear = shadow, clear_at = 0.0; // shadow and at, where the way was last clear of everything
     int touches = 0; // 1, and how many samples in a row of a touch were not above 0; 0: none
     int probes = 0;   // steps of the touch
+$if FILMS
+    bool careful = false; // a film is on the way: each mark is tried for one
+    bool done = false;
+$end
     int turn = $ZERO;
 $if PASSES
     int taken = 0;
@@ -36,9 +96,11 @@ $if PASSES
         kept = fathom_kept(fathom_kept_1);
         at = kept.x;
         quiet = kept.y;
-        clear = kept.z;
-        clear_at = kept.w;
         taken = int(fathom_kept(fathom_kept_3).y);
+$if FILMS
+        careful = taken < 0;
+        if (careful) taken = -1 - taken;
+$end
         fathom_light_kept = -1;
     }
     int limit = min(fathom_turns - fathom_taken, fathom_budget - taken);
@@ -90,7 +152,7 @@ $else
             if (!(f >= -film) || f <= 0.0 && touches >= $DEEP) return 0.0;
 $end
             ++turn;
-$# What is touched is passed; so it has shaded nothing.
+$# What is touched is passed.
             if (f < film || touches > 0) {
                 bool on = f < film;
                 if (touches == 0) probes = 0;
@@ -103,15 +165,6 @@ $# What is touched is passed; so it has shaded nothing.
                     mark = false;
                     continue;
                 }
-                if (f > $ACROSS * probe) {
-                    shadow = clear;
-                    at = clear_at;
-                    quiet = s * (1.0 - $BEYOND * angle);
-                }
-            }
-            if (f >= $CLOSED_FROM * angle * s) {
-                clear = shadow;
-                clear_at = at;
             }
             next = f;
             if (mark && s <= quiet && f < shadow * angle * s) {
@@ -140,22 +193,39 @@ $if PASSES
             if (s > margin && taken + turn < fathom_budget) {
                 fathom_goes_on = true;
                 fathom_keep_0 = vec4(0.0, s, touches > 0 ? float(-touches - 8 * probes) : float(mark), shadow);
-                fathom_keep_1 = vec4(at, quiet, clear, clear_at);
+                fathom_keep_1 = vec4(at, quiet, 0.0, 0.0);
+$if FILMS
+                fathom_keep_3.y = float(careful ? -1 - taken - turn : taken + turn);
+$else
                 fathom_keep_3.y = float(taken + turn);
+$end
                 return 1.0;
             }
 $end
             if (s > margin) fathom_shadow_undecided = true;
+$if FILMS
+            if (!(shadow < $CLOSED_FROM) || (careful && !(shadow > $DARKEST))) break;
+            done = !(shadow > $DARKEST);
+            if (!done) {
+$else
             if (!(shadow > $DARKEST && shadow < $CLOSED_FROM)) break;
-            search = 0;
-            float gap = fathom_power($MARKS * angle * at);
-            lo = max(at - gap, margin);
-            hi = min(at + gap, reach);
-            a = hi - $GOLDEN * (hi - lo);
-            b = lo + $GOLDEN * (hi - lo);
-            x = a;
-            continue;
+            {
+$end
+                search = 0;
+                left = true;
+                float gap = fathom_power($MARKS * angle * at);
+                lo = max(at - gap, margin);
+                hi = min(at + gap, reach);
+                a = hi - $GOLDEN * (hi - lo);
+                b = lo + $GOLDEN * (hi - lo);
+                x = a;
+                continue;
+            }
         }
+        float near = 1e30;
+$if FILMS
+        if (!done) {
+$end
         if (tap < 0) { // golden sections
             if (left) at_a = f;
             if (!left) at_b = f;
@@ -188,7 +258,7 @@ $end
         }
         if (tap == 0) value = f;
 $if UNIT_SLOPE
-        float near = value;
+        near = value;
 $else
         if (tap == 0) {
             sum = vec3(0.0);
@@ -199,8 +269,48 @@ $else
             ++tap;
             continue;
         }
-        float near = value / max(length(0.75 / arm * sum), $MIN_SLOPE);
+        near = value / max(length(0.75 / arm * sum), $MIN_SLOPE);
 $end
+$if FILMS
+        }
+        float closed = near / (angle * x);
+        bool lowers = closed < shadow;
+        if (search >= 0 && !careful) {
+            done = true;
+            if (lowers) {
+                shadow = max(closed, $DARKEST);
+                at = x;
+            }
+        }
+        if (done || careful && lowers) {
+            float way = done ? at : x;
+            bool film = fathom_film(q + way * l, l, 0.25 * fathom_slack_at(way));
+$if CACHED
+            if (fathom_absent) return 1.0;
+$end
+            if (done) {
+                if (!film) break;
+                careful = true; // all of the way anew
+                done = false;
+                s = reach;
+                mark = false;
+                shadow = $CLOSED_FROM;
+                at = 0.0;
+                quiet = 1e30;
+                touches = 0;
+                tap = -1;
+                search = -1;
+                continue;
+            }
+            lowers = !film;
+        }
+        if (search >= 0) {
+            if (lowers) shadow = closed;
+            break;
+        }
+        quiet = x - $CALM * (min(near, value) - shadow * angle * x);
+        if (lowers) {
+$else
         float closed = near / (angle * x);
         if (search >= 0) {
             shadow = min(shadow, closed);
@@ -208,6 +318,7 @@ $end
         }
         quiet = x - $CALM * (min(near, value) - shadow * angle * x);
         if (closed < shadow) {
+$end
             shadow = max(closed, $DARKEST);
             at = x;
         }

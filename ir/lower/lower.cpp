@@ -95,6 +95,7 @@ void Lowering::run() {
         scene_.safe_radius = graph_.add_function({"scene_reach", {}, {p3_}, reach});
     }
 
+    scene_.films = may_have_films();
     scene_.unit_slope = unit_slope_[scene_.root.index] != 0;
     scene_.shaded = scene_.distance;
     if (shaded_apart_[scene_.root.index]) {

@@ -64,6 +64,7 @@ class Lowering {
     // -- what is looked at (shaded.cpp)
     bool has_slope_above_one(ShapeId id) const;
     void find_shaded();
+    bool may_have_films() const;
     NodeId shaded(ShapeId id, NodeId raw);
 
     // -- safe radius (safe_radius.cpp)

@@ -45,6 +45,21 @@ void Lowering::find_shaded() {
     }
 }
 
+// Where two surfaces may lie in one plane, with nothing between them; of fields of one's own nothing is
+// known.
+bool Lowering::may_have_films() const {
+    for (std::size_t i = 0; i <= scene_.root.index; ++i) {
+        const Shape &s = shape(ShapeId{i});
+        if (is_one_of(s.kind, {ShapeKind::Intersection, ShapeKind::Complement, ShapeKind::Xor,
+                               ShapeKind::Within}))
+            return true;
+        if (s.kind == ShapeKind::Library) continue;
+        for (const ShapeId child : s.children)
+            if (shape(child).kind == ShapeKind::Leaf) return true;
+    }
+    return shape(scene_.root).kind == ShapeKind::Leaf;
+}
+
 NodeId Lowering::shaded(ShapeId id, NodeId raw) {
     const ShapeFact &known = fact(id);
     if (!has_slope_above_one(id)) return divided(id, raw);

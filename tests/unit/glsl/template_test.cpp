@@ -21,7 +21,7 @@ const std::vector<std::string> flags{
     "TWICE",  "SKIP_SHADING", "LOCAL_NORMALS", "PICK",         "CACHED",     "FAR_CELLS",
     "AROUND", "ONE_LIGHT",    "BLENDED",       "PICTURE",      "FIELD_ONLY", "TIME",
     "ES",     "LOCATIONS",    "MARKED",        "OWN",          "UNPAINTED",  "PAINTED",
-    "LIT",    "CLASSIC",      "SOFT",          "FOUR_OUTPUTS", "ESTIMATED"};
+    "LIT",    "CLASSIC",      "SOFT",          "FOUR_OUTPUTS", "ESTIMATED",  "FILMS"};
 
 // What a flag decides beside its own `$if`, as the emitter has it.
 Values values_with(std::string_view name, const std::set<std::string> &on) {
@@ -98,9 +98,11 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "WIDEST",
                                "PROBE",
                                "ACROSS",
+                               "FILM_NEAR",
+                               "FILM_LOOK",
+                               "FILM_TURN",
                                "BEHIND",
                                "LIFT",
-                               "BEYOND",
                                "SHARE",
                                "CLOSED_FROM",
                                "MARKS",
@@ -125,12 +127,13 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "CELL"})
         values.emplace(number, "0.5");
     for (const char *count :
-         {"LIGHTS",     "MAX_STEPS", "ALL_TAPS",    "REFINEMENTS", "DEEP",      "NEARING",
-          "MANY_STEPS", "SEARCHES",  "CHECK_STEPS", "AGES",        "ROWS",      "COUNT",
-          "WISHES",     "SAMPLED",   "HIGHEST",     "HIGH_BITS",   "HIGH_MASK", "PLACE_BITS",
-          "HEAD",       "TAIL",      "LIMIT",       "INSERTED",    "EVICTED",   "DELETED",
-          "CROWDED",    "FULL",      "SWEPT",       "CHANGED",     "PAID",      "WASTED",
-          "LEFT",       "STEPS",     "MANY",        "REFUSED",     "STRIDE",    "LAST"})
+         {"LIGHTS",     "MAX_STEPS",  "ALL_TAPS",    "REFINEMENTS", "DEEP",      "NEARING",
+          "MANY_STEPS", "SEARCHES",   "CHECK_STEPS", "AGES",        "ROWS",      "COUNT",
+          "WISHES",     "SAMPLED",    "HIGHEST",     "HIGH_BITS",   "HIGH_MASK", "PLACE_BITS",
+          "FILM_STEPS", "FILM_LOOKS", "HEAD",        "TAIL",        "LIMIT",     "INSERTED",
+          "EVICTED",    "DELETED",    "CROWDED",     "FULL",        "SWEPT",     "CHANGED",
+          "PAID",       "WASTED",     "LEFT",        "STEPS",       "MANY",      "REFUSED",
+          "STRIDE",     "LAST"})
         values.emplace(count, "2");
     for (const char *word : {"EMPTY", "NOWHERE", "PLACES"}) values.emplace(word, "7u");
     for (const std::string &flag : flags) values.emplace(flag, is(flag.c_str()) ? "1" : "");
