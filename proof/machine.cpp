@@ -333,7 +333,7 @@ void Machine::finish(const Instruction &instruction, double rule, bool odd_used)
             rule = std::min(rule, up(times(instruction.norm, norm_[instruction.turned[0]]), 4));
     }
     const bool is_log = instruction.op == Op::Log || instruction.op == Op::Log2;
-    if (is_log && instruction.form == Form::Plain &&
+    if (is_log && n == 1 && instruction.form == Form::Plain &&
         (rule < infinity || value(instruction.args[0], 0).lo >= min_single))
         rule = std::min(rule, up(times(instruction.op == Op::Log ? 1 : std::numbers::log2e,
                                        relative_[instruction.args[0]]),

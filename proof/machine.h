@@ -183,6 +183,7 @@ class Machine {
     };
     Monomial monomial(Slot s, int depth = 0) const;
     Raised raised(Slot s) const;
+    Raised grows_as_itself(Slot s) const;
     Raised raised_to(Slot u, double power) const;
     Raised raised(const Instruction &instruction) const;
     Interval above_base(Slot s, const Raised &x) const;

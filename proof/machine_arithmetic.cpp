@@ -62,7 +62,7 @@ void Step::quotient() {
             none);
         return settle_int();
     }
-    double most = 0, ratio = 0, greatest = 0;
+    double most = 0, ratio = 0, greatest = 0, squares = 0;
     bool singular = false, odd_divisor = false;
     for (int c = 0; c < n; ++c) {
         Interval x = value(0, c), y = value(1, c);
@@ -78,14 +78,16 @@ void Step::quotient() {
         }
         Interval q = x / y, inverse = Interval(1.0) / y;
         greatest = std::max(greatest, x.magnitude());
+        squares += times(q.magnitude(), q.magnitude());
         most = std::max(most, inverse.magnitude()), ratio = std::max(ratio, q.magnitude());
         set(c, q, scaled(inverse, sum(grad(0, c), scaled(-q, grad(1, c)))), odd(0, c));
     }
     if (singular) return fail(Trouble::Singular);
-    // |x y'/y^2|, by what is known of y' (2.16, 2.31)
+    // |x y'|/y^2, by what is known of y' (2.16, 2.31); of a vector over a number with x's length
     const Slot divisor = in.args[1];
+    const double length = n == 1 ? ratio : up(std::sqrt(squares), n + 4);
     const double by_divisor =
-        std::min({times(times(ratio, most), norm(1)), times(ratio, machine.relative_[divisor]),
+        std::min({times(times(ratio, most), norm(1)), times(length, machine.relative_[divisor]),
                   times(greatest, machine.norm_of_inverse(divisor, 1))});
     finish(up(times(most, norm(0)) + by_divisor, 4), odd_divisor);
     if (machine.norm_[out] != infinity) machine.cause_[out] = machine.cause_[in.args[0]];

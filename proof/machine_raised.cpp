@@ -59,6 +59,7 @@ double Machine::relative_norm(const Instruction &instruction) const {
     const auto of = [&](std::size_t i) { return relative_[instruction.args[i]]; };
     const Op op = instruction.op;
     const bool plain = instruction.form == Form::Plain;
+    // a vector of one number: of its length
     if (tape_.size[s] > 1) return plain && op == Op::Splat ? of(0) : infinity;
     const Interval v = value_[tape_.first[s]];
     if (v.lo < 0) return infinity;
@@ -82,10 +83,14 @@ double Machine::relative_norm(const Instruction &instruction) const {
     return std::min(up(known, 4), v.lo > 0 ? up(norm_[s] / v.lo, 4) : infinity);
 }
 
+Raised Machine::grows_as_itself(Slot s) const {
+    return relative_[s] < infinity ? Raised{relative_[s], infinity} : Raised();
+}
+
 Raised Machine::raised(Slot s) const {
     if (tape_.size[s] != 1) return {};
     if (norm_[s] == 0) return {0, 0, value(s, 0), false};
-    return raised_[s];
+    return raised_[s].slope < infinity ? raised_[s] : grows_as_itself(s);
 }
 
 // A number times a power of a value, as it is written: `-p.x*p.x`, `3*(r*r)*r`.
@@ -109,11 +114,12 @@ Machine::Monomial Machine::monomial(Slot s, int depth) const {
 }
 
 Raised Machine::raised_to(Slot u, double power) const {
-    const Raised inner = raised(u);
-    const bool known = inner.slope < infinity && inner.power > 0;
-    if (known && inner.base == Interval(0.0) && !inner.negative)
-        return {inner.power == infinity ? up(power * inner.slope) : inner.slope,
-                power * inner.power};
+    const Raised &inner = raised_[u];
+    const bool known = norm_[u] > 0 && inner.slope < infinity && inner.power > 0;
+    if (known && inner.base == Interval(0.0) && !inner.negative) {
+        const bool itself = inner.power == infinity;
+        return {itself ? up(power * inner.slope) : inner.slope, power * inner.power};
+    }
     return norm_[u] < infinity ? Raised{norm_[u], power} : Raised();
 }
 
@@ -143,8 +149,10 @@ Raised Machine::raised(const Instruction &instruction) const {
         Raised x = raised(a), y = raised(b);
         if (op == Op::Sub) y.base = -y.base, y.negative = !y.negative;
         if (x.slope == 0) std::swap(x, y);
+        if (y.slope == 0) return {x.slope, x.power, x.base + y.base, x.negative};
+        if (x.power != y.power && op == Op::Add) x = grows_as_itself(a), y = grows_as_itself(b);
         const Interval base = x.base + y.base;
-        if (y.slope == 0) return {x.slope, x.power, base, x.negative};
+        if (x.slope == infinity || y.slope == infinity) return {};
         if (x.power != y.power || x.negative != y.negative) return {};
         const double q = x.power, most = std::max(x.slope, y.slope);
         if (q == infinity) return {most, q, base, x.negative};
@@ -226,8 +234,6 @@ void Machine::hold_raised(const Instruction &instruction) {
     const Slot out = instruction.out;
     Raised &x = raised_[out];
     x = raised(instruction);
-    if (x.slope == infinity && tape_.size[out] == 1 && relative_[out] < infinity)
-        x = {relative_[out], infinity};
     if (x.slope == infinity || x.slope == 0 || x.negative || !(x.base.lo >= 0)) return;
     relative_[out] =
         std::min(relative_[out],

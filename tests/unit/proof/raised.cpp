@@ -178,3 +178,27 @@ TEST_CASE("what leaves single precision where rays go has no bound, though its s
     CHECK(everywhere.trouble == proof::Trouble::Overflow);
     CHECK(nearby.lipschitz == Approx(1).epsilon(0.05));
 }
+
+TEST_CASE(
+    "a vector over what falls, and its logarithm, are as steep as all their components together") {
+    Falling b;
+    Graph &g = b.g;
+    const NodeId ones = g.vec3(1, 1, 1), up = g.add(b.n(1), b.r2()), e = b.s.call(Op::Exp, b.s.x);
+    const auto bound = [&](NodeId field) { return b.s.bound(field, cube(2)).lipschitz; };
+    const double root = std::sqrt(3.0);
+    const auto splat = [&](NodeId x) { return b.s.vec(x, x, x); };
+    CHECK(bound(b.s.length(g.div(ones, up))) >= root * 0.6495);
+    CHECK(bound(b.s.length(g.div(ones, e))) >= root * std::exp(2.0) * 0.999);
+    CHECK(bound(b.s.length(b.s.call(Op::Log, splat(up)))) >= root * 0.999);
+    CHECK(bound(b.s.length(b.s.call(Op::Log, g.mul(ones, g.add(b.n(1), e))))) >=
+          root / (1 + std::exp(-2.0)) * 0.999);
+    CHECK(bound(b.s.length(g.div(b.s.p, up))) >= 0.999);
+}
+
+TEST_CASE("a sum of two fourth powers falls as one does") {
+    Falling b;
+    Graph &g = b.g;
+    const auto fourth = [&](NodeId x) { return g.make(Op::Pow, {x, b.n(4)}); };
+    const NodeId sum = g.add(fourth(b.s.x), fourth(b.s.y));
+    CHECK(b.s.bound(b.s.call(Op::Exp, g.neg(sum))).lipschitz < 2.5);
+}
