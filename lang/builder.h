@@ -257,6 +257,7 @@ class Builder {
     bool foreign_binding(Index at);
     bool foreign_name(Index at);
     std::vector<Edit> names_of_let(Index let);
+    bool foreign_count(Index at);
     bool foreign_in(Index at);
     bool foreign_function_body(Index at);
     bool foreign_instead(Index at, std::string message, const std::string &replacement);

@@ -201,6 +201,34 @@ bool Builder::foreign_name(Index at) {
     return foreign_loop(at);
 }
 
+// `for i = 1, 8 do … end`, at the `=`.
+bool Builder::foreign_count(Index at) {
+    const auto is = [&](Index i, const char *word) {
+        return kind(i) == Tok::Name && text(i) == word;
+    };
+    const auto next = [&](Index i) { return match(i) > i ? match(i) + 1 : i + 1; };
+    Index comma = at + 1;
+    while (!ends_statement(comma) && kind(comma) != Tok::Comma) comma = next(comma);
+    Index begin = comma + 1;
+    while (!ends_statement(begin) && kind(begin) != Tok::Comma && !is(begin, "do"))
+        begin = next(begin);
+    if (kind(comma) != Tok::Comma || !is(begin, "do")) return false;
+    Index end = begin + 1;
+    for (int open = 1; end < tokens_.tokens.size(); ++end) {
+        if (is(end, "do") || is(end, "then")) ++open;
+        if (is(end, "end") && --open == 0) break;
+    }
+    if (end == tokens_.tokens.size()) return false;
+    failed_ = end;
+    foreign(span(at), "a loop runs over what stands behind `in`, and its body stands in braces")
+        .help("write `for i in 1..=8 { … }`",
+              {{span(at), "in"},
+               {{id_, token(comma).begin, token(comma + 1).begin}, "..="},
+               {span(begin), "{"},
+               {span(end), "}"}});
+    return true;
+}
+
 // Behind the variable of a `for`.
 bool Builder::foreign_in(Index at) {
     const Tok found = kind(at);
@@ -219,6 +247,7 @@ bool Builder::foreign_in(Index at) {
         d.help("write " + in_code("for " + head + " { … }"), {{span(name, brace - 1), head}});
         return true;
     }
+    if (found == Tok::Assign && foreign_count(at)) return true;
     if (found == Tok::Assign)
         return foreign_instead(at, "a loop runs over what stands behind `in`", "in");
     if (found == Tok::Name && text(at) == "of")

@@ -248,27 +248,32 @@ void Builder::foreign_colon(Index at) {
 // `if a then b else c`, `for i in 0..3 do b`.
 void Builder::foreign_then(Index at) {
     Diagnostic &d = foreign(span(at), "a body stands in braces");
+    const auto is_end = [&](Index i) { return kind(i) == Tok::Name && text(i) == "end"; };
     const auto end_of = [&](Index i) { // of the branch that begins there
         while (!ends_statement(i) && kind(i) != Tok::Else && kind(i) != Tok::Close &&
-               kind(i) != Tok::ListClose && kind(i) != Tok::Comma)
+               kind(i) != Tok::ListClose && kind(i) != Tok::Comma && !is_end(i))
             i = match(i) > i ? match(i) + 1 : i + 1;
         return i;
     };
     const auto before = [&](Index i) { return Span{id_, token(i).begin, token(i).begin}; };
     const auto behind = [&](Index i) { return Span{id_, token(i - 1).end, token(i - 1).end}; };
+    const auto close = [&](Index i) {
+        if (is_end(i)) failed_ = i;
+        return is_end(i) ? Edit{span(i), "}"} : Edit{behind(i), " }"};
+    };
     const Index first = at + 1, end = end_of(first);
     if (end == first || kind(first) == Tok::Body) {
         d.help("write `{ … }`");
         return;
     }
     std::string told = "`{ " + std::string(text(token(first).begin, token(end - 1).end)) + " }";
-    std::vector<Edit> edits{{span(at), "{"}, {behind(end), " }"}};
+    std::vector<Edit> edits{{span(at), "{"}, close(end)};
     const Index other = end + 1;
     if (kind(end) == Tok::Else && kind(other) != Tok::If && kind(other) != Tok::Body) {
         if (const Index last = end_of(other); last > other) {
             told += " else { " + std::string(text(token(other).begin, token(last - 1).end)) + " }";
             edits.push_back({before(other), "{ "});
-            edits.push_back({behind(last), " }"});
+            edits.push_back(close(last));
         }
     }
     d.help("write " + told + "`", std::move(edits));

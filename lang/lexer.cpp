@@ -338,7 +338,9 @@ bool Lexer::strange_sign(std::uint32_t begin, std::uint32_t end, std::uint32_t c
         {0x2192, Tok::Arrow, "->"},        {0x21D2, Tok::FatArrow, "=>"},
         {0x222A, Tok::Bar, "|"},           {0x2229, Tok::Amp, "&"},
         {0xFF08, Tok::Open, "("},          {0xFF09, Tok::Close, ")"},
-        {0xFF0C, Tok::Comma, ","},         {0x2026, Tok::DotDot, ".."}};
+        {0xFF0C, Tok::Comma, ","},         {0x2026, Tok::DotDot, ".."},
+        {0xFF1B, Tok::End, ";"},           {0xFF1A, Tok::Colon, ":"},
+        {0xFF1D, Tok::Assign, "="},        {0xFF0B, Tok::Plus, "+"}};
     for (const Twin &twin : twins) {
         if (twin.code_point != c) continue;
         add(twin.kind, begin, end);

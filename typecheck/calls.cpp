@@ -314,11 +314,19 @@ static void help_with_method(Diagnostic &d, const lang::Member &member, const Fi
         d.help("a shape is given a colour or a material by `.paint(…)`",
                {{member.name.span, "paint"}});
     const char axis = name.empty() ? ' ' : name.back();
-    const bool turns = name.starts_with("rotate") && name.size() <= 8;
-    if (!turns || call.arguments.size() != 1 || call.arguments[0].name) return;
     const char upper = axis >= 'x' && axis <= 'z' ? static_cast<char>(axis - 'x' + 'X') : axis;
     if (upper < 'X' || upper > 'Z') return;
+    if (call.arguments.size() != 1 || call.arguments[0].name) return;
     const Span angle = ast.exprs[call.arguments[0].value].span;
+    const std::string_view moved = name.substr(0, name.find_last_not_of("_XYZxyz") + 1);
+    if (moved == "translate" || moved == "move") {
+        const std::string along = fmt::format("{}: ", static_cast<char>(upper - 'X' + 'x'));
+        d.help(
+            fmt::format("write `.translate({}…)`", along),
+            {{member.name.span, "translate"}, {{angle.source, angle.begin, angle.begin}, along}});
+        return;
+    }
+    if (!name.starts_with("rotate") || name.size() > 8) return;
     d.help(fmt::format("write `.rotate(angle, axis: {})`", upper),
            {{member.name.span, "rotate"},
             {{angle.source, angle.end, angle.end}, fmt::format(", axis: {}", upper)}});
