@@ -3,13 +3,17 @@
 
 #include "backend-cpu/prune/solid_box.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace fathom::driver {
 namespace {
 
-constexpr int moments = 16;         // of a scene that moves
-constexpr double most_work = 200e6; // operations on boxes
+constexpr int moments = 16;             // of a scene that moves
+constexpr double most_work = 200e6;     // operations on boxes
+constexpr std::size_t first_a_side = 1; // parts that are looked at together at first
 
 // Spread over the whole time by the golden ratio, so that no period of the motion is met in step.
 std::vector<double> times_of(const ir::Scene &scene, ir::FunctionId part) {
@@ -29,13 +33,67 @@ ir::Box over_time(const ir::Scene &scene, ir::FunctionId part, const ir::Box &do
     return box;
 }
 
+// The parts that reach farthest to each of the six sides.
+std::vector<std::size_t> outermost(const std::vector<ir::Scene::Framed> &parts,
+                                   std::vector<std::size_t> of, std::size_t a_side) {
+    if (of.size() <= 6 * a_side) return of;
+    std::vector<std::size_t> chosen;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const bool up : {true, false}) {
+            std::ranges::nth_element(of, of.begin() + static_cast<std::ptrdiff_t>(a_side), {},
+                                     [&](std::size_t k) {
+                                         const ir::Box &box = parts[k].bounds;
+                                         const double far = up ? -box.hi[axis] : box.lo[axis];
+                                         return std::pair(far, k);
+                                     });
+            chosen.insert(chosen.end(), of.begin(),
+                          of.begin() + static_cast<std::ptrdiff_t>(a_side));
+        }
+    std::ranges::sort(chosen);
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    return chosen;
+}
+
+bool within(const ir::Box &box, const ir::Box &outer) {
+    for (std::size_t i = 0; i < 3; ++i)
+        if (box.lo[i] < outer.lo[i] || box.hi[i] > outer.hi[i]) return false;
+    return true;
+}
+
+// The box of the parts that have bounds: first that of the outermost, which mostly holds the bounds
+// of all others; then of more of those that it does not.
+ir::Box of_bounded(ir::Scene &scene, double &work) {
+    const std::vector<ir::Scene::Framed> &parts = scene.framed_bounded;
+    std::vector<std::size_t> left(parts.size());
+    std::iota(left.begin(), left.end(), std::size_t{0});
+    ir::Box found;
+    for (std::size_t a_side = first_a_side; !left.empty(); a_side *= 4) {
+        std::vector<ir::NodeId> distances;
+        ir::Box domain;
+        const std::vector<std::size_t> chosen = outermost(parts, left, a_side);
+        for (const std::size_t k : chosen) {
+            distances.push_back(parts[k].distance);
+            domain = ir::hull(domain, parts[k].bounds);
+        }
+        const ir::FunctionId together =
+            scene.graph.add_function({"framed",
+                                      {},
+                                      {scene.framed_point},
+                                      scene.graph.make(ir::Op::Union, ir::Type::Float, distances)});
+        found = ir::hull(found, over_time(scene, together, domain, work));
+        std::erase_if(left, [&](std::size_t k) {
+            return within(parts[k].bounds, found) || std::ranges::binary_search(chosen, k);
+        });
+    }
+    return found;
+}
+
 } // namespace
 
 void find_framing(ir::Scene &scene, Diagnostics &diagnostics) {
     if (scene.camera.given || scene.top_level.empty()) return;
     double work = most_work;
-    if (scene.framed_together)
-        scene.framed = over_time(scene, scene.framed_together, scene.framed, work);
+    scene.framed = of_bounded(scene, work);
     constexpr double far = cpu::endless_from;
     const ir::Box space{{-far, -far, -far}, {far, far, far}};
     bool endless = false;

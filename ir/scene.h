@@ -231,9 +231,14 @@ struct Scene {
     FunctionId hit;     // (vec3) -> Hit: the same distance, with the surface that decides
     FunctionId endless, endless_hit; // the same of the parts without an end alone, where the scene
                                      // has others beside them
-    // (vec3) -> float, below 0 in the solid; where no camera is given: the parts whose bounds are
-    // known together (none: there are none), and each other part alone.
-    FunctionId framed_together;
+    // Where no camera is given: the parts whose bounds are known, by which their solid is looked
+    // for; and each other part alone, as a function (vec3) -> float that is below 0 in the solid.
+    struct Framed {
+        NodeId distance; // by framed_point
+        Box bounds;
+    };
+    NodeId framed_point; // a Var
+    std::vector<Framed> framed_bounded;
     std::vector<FunctionId> framed_alone;
     std::vector<Surface> surfaces;  // by a hit's paint; the last is that of what nobody painted
     FunctionId background_function; // (vec3 direction) -> vec3

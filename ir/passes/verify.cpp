@@ -23,7 +23,6 @@ class Verifier {
         if (scene_.safe_radius) signature(scene_.safe_radius, "reach", Type::Vec2);
         if (scene_.endless) signature(scene_.endless, "endless", Type::Float);
         if (scene_.endless_hit) signature(scene_.endless_hit, "endless_hit", Type::Hit);
-        if (scene_.framed_together) signature(scene_.framed_together, "framed", Type::Float);
         for (FunctionId part : scene_.framed_alone) signature(part, "framed_alone", Type::Float);
         signature(scene_.background_function, "background", Type::Vec3);
         if (scene_.surfaces.empty()) fail("there is no surface for what is not painted");

@@ -5,6 +5,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
@@ -88,6 +90,27 @@ TEST_CASE("the solid fills what is framed") {
     check_frame("sphere(1)\nsphere(1).translate(x: 9)\nplane(Y, -1)\nslab(2, axis: X)",
                 {-1, -1, -1}, {10, 1, 1});
     check_frame("sphere(1).translate([3 * sin(time), 0, 0])", {-4, -1, -1}, {4, 1, 1}, 0.02);
+}
+
+TEST_CASE("of many parts the solid fills what is framed") {
+    std::string halves, moving;
+    for (int i = 0; i < 12; ++i)
+        for (int j = 0; j < 12; ++j) {
+            const std::string place =
+                fmt::format("[{}, {}, {}]", 3 * i, (7 * i + 5 * j) % 12, 3 * j);
+            // whose bounds are that of the sphere
+            halves += fmt::format("(sphere(1) & plane(-Y, -0.5)).translate({})\n", place);
+            moving += fmt::format("sphere(1).translate({} + [s, 0, 0])\n", place);
+        }
+    const double r = std::sqrt(0.75);
+    check_frame(halves, {-r, 0.5, -r}, {33 + r, 12, 33 + r});
+    check_frame("union {\n" + halves + "}\n", {-r, 0.5, -r}, {33 + r, 12, 33 + r});
+    check_frame(halves + "plane(Y, -9)\n", {-r, 0.5, -r}, {33 + r, 12, 33 + r});
+    check_frame("param s = 1.0 in -50.0..50.0\n" + moving, {0, -1, -1}, {35, 12, 34});
+    // a part that is far out by its bounds, and empty
+    check_frame(halves + "(sphere(1) & sphere(1).translate(x: 1.9999)).translate(x: 90)\n"
+                         "(box(4) - box(6)).translate(x: -90)\n",
+                {-r, 0.5, -r}, {91, 12, 33 + r}, 0.006);
 }
 
 TEST_CASE("a field too dear to be searched is framed by its box") {
