@@ -149,7 +149,7 @@ void intervals_of(const Field::Impl &impl, std::span<const Box> boxes,
                 asked.hi[axis][k] = box.hi[axis];
             }
         }
-        cpu::run_over(impl.parts, *shortener, impl.whole.selection(impl.parts), asked);
+        cpu::run_values(impl.parts, *shortener, impl.whole.selection(impl.parts), asked);
         for (std::size_t k = 0; k < n; ++k)
             intervals[first + k] = {shortener->result_lo[k], shortener->result_hi[k]};
     }

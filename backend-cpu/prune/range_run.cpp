@@ -18,9 +18,10 @@ constexpr float min_round = 1e-15f; // of smaller radii the squares are no float
 // Runs steps over ranges and notes what wins.
 class RangeRunner {
   public:
-    RangeRunner(const PruneProgram &parts, Shortener &memory, std::size_t boxes)
+    RangeRunner(const PruneProgram &parts, Shortener &memory, bool notes)
         : parts_(parts), program_(*parts.program), memory_(memory),
-          loops_(range_loops()), cells_{memory.lo.data(), memory.hi.data()}, n_(boxes) {}
+          loops_(range_loops()), cells_{memory.lo.data(), memory.hi.data()}, n_(memory.boxes),
+          notes_(notes) {}
 
     void run(const Selection &tape) {
         std::size_t loop = 0;
@@ -28,14 +29,14 @@ class RangeRunner {
         memory_.lows.clear(), memory_.loop_runs.clear(), memory_.cuts.clear();
         memory_.listed.clear();
         // Of a long tape these are the most of all that is kept: no more than is needed.
-        const auto minima = std::ranges::count_if(
-            tape.steps, [&](std::uint32_t id) { return parts_.parts[id].choice == Choice::Least; });
+        const auto choice = [&](std::uint32_t id) { return parts_.parts[id].choice; };
+        const auto minima = notes_ ? std::ranges::count(tape.steps, Choice::Least, choice) : 0;
         memory_.ends.reserve(3 * n_ * static_cast<std::size_t>(minima) + n_ * tape.loops.size());
         for (std::uint32_t id : tape.steps) {
             const Part &part = parts_.parts[id];
             Shortener::Chosen chosen;
-            if (part.choice != Choice::None) {
-                prepare(part);
+            if (part.choice != Choice::None) prepare(part);
+            if (notes_ && part.choice != Choice::None) {
                 wins(id, part, chosen.wins);
                 if (part.choice == Choice::Least) chosen.ends = begin_ends(part);
             }
@@ -46,7 +47,7 @@ class RangeRunner {
                 one(id);
             if (chosen.ends != Shortener::no_ends)
                 copy_ends(cells_.hi, parts_.operands[step.operands], chosen.ends);
-            memory_.chosen.push_back(chosen);
+            if (notes_) memory_.chosen.push_back(chosen);
         }
     }
 
@@ -409,6 +410,7 @@ class RangeRunner {
     RangeLoops loops_;
     RangeCells cells_;
     std::size_t n_;
+    bool notes_; // of what wins
     std::vector<Decided> decided_;
 };
 
@@ -449,7 +451,7 @@ void enter_boxes(const PruneProgram &parts, Shortener &shortener, const Boxes &b
 }
 
 void run_steps(const PruneProgram &parts, Shortener &shortener, const Selection &steps) {
-    RangeRunner(parts, shortener, shortener.boxes).run(steps);
+    RangeRunner(parts, shortener, true).run(steps);
 }
 
 void take_results(const PruneProgram &parts, Shortener &shortener) {
@@ -465,6 +467,13 @@ void run_over(const PruneProgram &parts, Shortener &shortener, const Selection &
               const Boxes &boxes) {
     enter_boxes(parts, shortener, boxes);
     run_steps(parts, shortener, from);
+    take_results(parts, shortener);
+}
+
+void run_values(const PruneProgram &parts, Shortener &shortener, const Selection &from,
+                const Boxes &boxes) {
+    enter_boxes(parts, shortener, boxes);
+    RangeRunner(parts, shortener, false).run(from);
     take_results(parts, shortener);
 }
 

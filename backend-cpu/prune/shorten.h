@@ -132,6 +132,9 @@ void take_results(const PruneProgram &parts, Shortener &shortener);
 // First what a tape that holds in all boxes comes to in each, then, box by box, what of it is left.
 void run_over(const PruneProgram &parts, Shortener &shortener, const Selection &from,
               const Boxes &boxes);
+// What the tape comes to alone: no tape is shortened by it.
+void run_values(const PruneProgram &parts, Shortener &shortener, const Selection &from,
+                const Boxes &boxes);
 // False for `cuts`: no Cut but those that the tape had.
 void shorten(const PruneProgram &parts, Shortener &shortener, const Selection &from,
              std::size_t box, bool cuts, ShortTape &tape);

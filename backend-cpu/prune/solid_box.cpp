@@ -127,7 +127,7 @@ struct Search {
             }
             boxes.count = padded;
             work -= a_box * static_cast<double>(padded);
-            run_over(parts, shortener, whole.selection(parts), boxes);
+            run_values(parts, shortener, whole.selection(parts), boxes);
             for (std::size_t k = 0; k < count; ++k) {
                 const double far = far_of(children[k]), at = middle(children[k])[axis];
                 // Nothing solid by its range, or by the step that is safe from its middle.
