@@ -34,40 +34,60 @@ template <class Cell> class Runner {
     // False: the loop that this block is the body of is done.
     bool run(std::uint32_t block) const {
         const Program::Block range = program_.blocks[block];
-        for (std::uint32_t i = range.first; i < range.last; ++i) {
-            const Step &step = program_.steps[i];
-            const std::uint32_t *operands = program_.operands.data() + step.operands;
-            if (step.kind == StepKind::Run)
-                loops_[step.target](cells_, operands, step.once ? 1 : n_);
-            else if (!one(step, operands))
+        const std::uint32_t *operands = program_.operands.data();
+        const auto *loops = loops_.data(); // not read anew after each call
+        Cell *cells = cells_;
+        const std::size_t n = n_;
+        for (const Step *step = program_.steps.data() + range.first,
+                        *last = program_.steps.data() + range.last;
+             step != last; ++step)
+            if (step->kind == StepKind::Run)
+                loops[step->target](cells, operands + step->operands, step->once ? 1 : n);
+            else if (!one(*step, operands + step->operands))
                 return false;
-        }
         return true;
     }
 
     void run(const Selection &selection) const {
         const Selection::Rows *rows = selection.loops.data();
-        const auto run_step = [&](const Step &step, const std::uint32_t *operands) {
-            if (step.kind == StepKind::Run) {
-                loops_[step.target](cells_, operands, step.once ? 1 : n_);
-            } else if (step.kind == StepKind::Loop) {
-                if (rows->all)
-                    loop(program_.loops[step.target]);
+        const auto *loops = loops_.data();
+        Cell *cells = cells_;
+        const std::size_t n = n_;
+        if (!selection.packed.empty()) {
+            const std::uint32_t *operands = selection.packed_operands;
+            for (const Step &step : selection.packed)
+                if (step.kind == StepKind::Run)
+                    loops[step.target](cells, operands + step.operands, step.once ? 1 : n);
                 else
-                    iterations(program_.loops[step.target], selection.rows + rows->first, *rows);
-                ++rows;
-            } else {
-                one(step, operands);
-            }
-        };
-        for (const Step &step : selection.packed)
-            run_step(step, selection.packed_operands + step.operands);
-        if (selection.packed.empty())
-            for (std::uint32_t id : selection.steps)
-                run_step(selection.table[id], selection.operands + selection.table[id].operands);
+                    other(step, operands + step.operands, selection, rows);
+            return;
+        }
+        const std::uint32_t *operands = selection.operands;
+        for (const std::uint32_t id : selection.steps) {
+            const Step &step = selection.table[id];
+            if (step.kind == StepKind::Run)
+                loops[step.target](cells, operands + step.operands, step.once ? 1 : n);
+            else
+                other(step, operands + step.operands, selection, rows);
+        }
     }
 
   private:
+    // A selection's step that is no kernel; `rows`: of the loops from here on.
+    void other(const Step &step, const std::uint32_t *operands, const Selection &selection,
+               const Selection::Rows *&rows) const {
+        if (step.kind != StepKind::Loop) {
+            one(step, operands);
+            return;
+        }
+        const Loop &loop = program_.loops[step.target];
+        if (rows->all)
+            this->loop(loop);
+        else
+            iterations(loop, selection.rows + rows->first, *rows);
+        ++rows;
+    }
+
     bool one(const Step &step, const std::uint32_t *operands) const {
         const std::size_t n = step.once ? 1 : n_;
         switch (step.kind) {

@@ -2,6 +2,8 @@
 // gathered by cell, so that each tape runs over a batch.
 #include "backend-cpu/prune/pruning.h"
 
+#include "backend-cpu/prune/pack.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -61,16 +63,6 @@ Boxes part_of(const Boxes &boxes, std::size_t first, std::size_t count) {
     return part;
 }
 
-void pack(const PruneProgram &parts, const ShortTape &tape, PruneBlock &block) {
-    for (std::uint32_t id : tape.steps) {
-        Step step = parts.table[id];
-        const std::uint32_t *operands = parts.operands.data() + step.operands;
-        step.operands = static_cast<std::uint32_t>(block.operands.size());
-        block.operands.insert(block.operands.end(), operands, operands + parts.parts[id].operands);
-        block.packed.push_back(step);
-    }
-}
-
 constexpr std::size_t tried_points = 16;
 
 // At how many of these points a box's tape with a Cut gives no value. A chain of blends that comes
@@ -117,6 +109,7 @@ int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
     std::array<Piece, max_boxes + 1> pieces{};
     int unknown = 0;
     ShortTape &tape = evaluator.tape;
+    Packer packer(pruning.parts);
     for (std::size_t k = 0; k < max_boxes; ++k) {
         const std::size_t box = k % at_once; // of those that were run over
         if (box == 0)
@@ -153,7 +146,7 @@ int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
         // where cells get smaller and tapes hardly shorter, the shapes are closer than their blends
         made.splits = level + 1 < pruning.settings.depth && tape.cost > pruning.settings.enough &&
                       (level < 1 || tape.cost < 0.8f * cell.cost);
-        if (!made.splits && !is_long) pack(pruning.parts, tape, block);
+        if (!made.splits && !is_long) packer.pack(tape, block.packed, block.operands);
         ++evaluator.tally.cells;
     }
     if (at_once < max_boxes) std::vector<float>().swap(evaluator.shortener.ends);

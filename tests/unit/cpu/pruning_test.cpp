@@ -2,11 +2,14 @@
 // below. And that cells leave out what they can.
 #include "scenes.h"
 
+#include "backend-cpu/prune/pack.h"
 #include "backend-cpu/prune/pruning.h"
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <bit>
+#include <cstring>
 #include <thread>
 
 using namespace fathom::cpu;
@@ -199,6 +202,73 @@ TEST_CASE("operands that cannot matter are not computed") {
         const Answers answers = check(compile(f.scene, f.function(d), Choices::Apart));
         if (how != 4) CHECK(answers.kernels < 200); // of some 600
     }
+}
+
+TEST_CASE("a tape that is packed has no copies of what won, and gives the same bits") {
+    // a union of balls, each less another and some joined by rows of a table
+    Shell f;
+    const Points at = spread(120);
+    NodeId d = f.ball(0, 0, 0, 0.3);
+    for (std::size_t i = 0; i < 120; ++i) {
+        const NodeId ball = f.ball(at.x[i], at.y[i], at.z[i], 0.5),
+                     other = f.ball(at.y[i], at.z[i], at.x[i], 0.4);
+        d = f.g.make(Op::Union, {d, f.g.make(Op::Intersection, {ball, f.g.neg(other)})});
+    }
+    const TableId rows = f.table(40);
+    const NodeId joined = f.loop(40, d, [&](NodeId best, NodeId i) {
+        return f.g.make(Op::Union, {best, f.row_ball(rows, i)});
+    });
+    std::size_t before = 0, after = 0;
+    for (const NodeId field : {d, joined, f.g.make(Op::Max, {f.ball(0, 0, 0, 1), joined})}) {
+        const Program program = compile(f.scene, f.function(field), Choices::Apart);
+        const PruneProgram parts = prune_program_of(program, {});
+        const ShortTape whole = whole_tape(parts);
+        Shortener shortener(parts);
+        Scratch scratch = make_scratch(program, {});
+        Packer packer(parts);
+        Boxes boxes;
+        boxes.count = max_boxes;
+        for (std::size_t k = 0; k < max_boxes; ++k)
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                boxes.lo[axis][k] = static_cast<float>(k >> 2 * axis & 3) - 2;
+                boxes.hi[axis][k] = boxes.lo[axis][k] + 1;
+            }
+        run_over(parts, shortener, whole.selection(parts), boxes);
+        for (std::size_t k = 0; k < max_boxes; ++k) {
+            ShortTape tape;
+            shorten(parts, shortener, whole.selection(parts), k, false, tape);
+            std::vector<Step> steps;
+            std::vector<std::uint32_t> operands;
+            packer.pack(tape, steps, operands);
+            const auto copies = [](const Step &step) {
+                return step.kind == StepKind::Run &&
+                       kernel_of_variant(step.target) == Kernel::CopyF;
+            };
+            if (field == d) { // loops hold registers
+                for (const std::uint32_t id : tape.steps) before += copies(parts.table[id]);
+                after += static_cast<std::size_t>(std::ranges::count_if(steps, copies));
+            }
+            constexpr std::size_t n = 48;
+            float in[3][n], out[2][n];
+            for (std::size_t i = 0; i < n; ++i) {
+                in[0][i] = boxes.lo[0][k] + (at.x[i] + 2) / 4;
+                in[1][i] = boxes.lo[1][k] + (at.y[i] + 2) / 4;
+                in[2][i] = boxes.lo[2][k] + (at.z[i] + 2) / 4;
+            }
+            const float *from[] = {in[0], in[1], in[2]};
+            Selection selection = tape.selection(parts);
+            float *plain[] = {out[0]}, *packed[] = {out[1]};
+            std::uint32_t unknown[n];
+            evaluate(program, scratch, from, plain, n, selection, unknown);
+            selection.packed = steps;
+            selection.packed_operands = operands.data();
+            evaluate(program, scratch, from, packed, n, selection, unknown);
+            CHECK(std::memcmp(out[0], out[1], sizeof out[0]) == 0);
+        }
+    }
+    INFO(before << " copies, " << after << " packed");
+    CHECK(before > 1000);
+    CHECK(after <= max_boxes); // that of the result
 }
 
 TEST_CASE("of a field of very many parts cells keep few bytes for each, and the same bits") {
