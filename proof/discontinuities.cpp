@@ -11,8 +11,10 @@
 #include "proof/discontinuities.h"
 
 #include "ir/passes/inline.h"
+#include "proof/agreement.h"
 #include "proof/border_sides.h"
 #include "proof/continuity.h"
+#include "proof/machine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +43,7 @@ constexpr std::size_t max_groups = 48;
 
 // Is the field the same on all sides of the borders with these K?
 bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, const Counts &counts,
-             Met &met, Work &work) {
+             Met &met, const Notes &known, Work &work) {
     const bool one = counts.range.is_point();
     const NodeId whole = one ? graph.number(counts.range.lo)
                              : graph.make(Op::ToFloat, ir::Type::Float,
@@ -50,7 +52,7 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
                  little_angle = graph.fresh_var(ir::Type::Float),
                  radius = graph.fresh_var(ir::Type::Float);
     std::map<std::vector<std::uint32_t>, NodeId> unknown;
-    Notes notes;
+    Notes notes = known;
     std::vector<NodeId> sides;
     bool same_for_all = true;
     for (const Side side : {Side::Before, Side::At, Side::After}) {
@@ -62,7 +64,8 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
         if (border.limit.failed || border.moving.failed) return false;
         same_for_all =
             same_for_all && (same(graph, sides.front(), sides.back(), &work) ||
-                             same_with_mixes_as_sums(graph, sides.front(), sides.back(), &work));
+                             same_with_mixes_as_sums(graph, sides.front(), sides.back(), &work) ||
+                             sides_agree(graph, sides.front(), sides.back(), notes, work));
         if (!same_for_all && met.thresholds.empty() && !met.parity) return false;
     }
     return same_for_all;
@@ -71,7 +74,7 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
 // By cases for K: even and odd, and beside each number that it is compared with. `met` gets those
 // that it is compared with in some cases alone.
 bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool half, Met &met,
-                      Work &work) {
+                      const Notes &known, Work &work) {
     constexpr std::size_t most_thresholds = 8;
     if (met.thresholds.empty() && !met.parity) return false;
     std::vector<double> whole;
@@ -93,7 +96,7 @@ bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool h
             const bool odd = std::fmod(std::fabs(range.lo), 2) == 1;
             if (range.is_point() && odd != (parity == 1)) continue;
             Met more;
-            if (cancels(graph, seen, group, half, {parity, range}, more, work)) continue;
+            if (cancels(graph, seen, group, half, {parity, range}, more, known, work)) continue;
             met.parity = met.parity || more.parity;
             for (double t : more.thresholds)
                 if (std::ranges::find(met.thresholds, t) == met.thresholds.end())
@@ -103,20 +106,20 @@ bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool h
     return true;
 }
 
-bool cancels(Graph &graph, const Seen &seen, const Group &group, Work &work) {
+bool cancels(Graph &graph, const Seen &seen, const Group &group, const Notes &known, Work &work) {
     constexpr int most_rounds = 3; // of cases that lead to further ones
     bool halves = false, wholes = false;
     for (NodeId step : group.steps) (graph[step].op == Op::Round ? halves : wholes) = true;
     for (const bool half : {false, true}) {
         if (half ? !halves : !wholes) continue;
         Met met;
-        bool known = cancels(graph, seen, group, half, {}, met, work);
+        bool is_proved = cancels(graph, seen, group, half, {}, met, known, work);
         std::size_t before = std::size_t(-1);
-        for (int i = 0; i < most_rounds && !known && met.thresholds.size() != before; ++i) {
+        for (int i = 0; i < most_rounds && !is_proved && met.thresholds.size() != before; ++i) {
             before = met.thresholds.size();
-            known = cancels_by_cases(graph, seen, group, half, met, work);
+            is_proved = cancels_by_cases(graph, seen, group, half, met, known, work);
         }
-        if (!known) return false;
+        if (!is_proved) return false;
     }
     return true;
 }
@@ -200,11 +203,12 @@ std::unordered_map<NodeId, NodeId> throughs(const Graph &graph, NodeId root,
 // The least expression that all uses of a group's steps go through, then larger ones, up to the
 // whole field.
 bool cancels_somewhere(Graph &graph, NodeId root, const Group &group,
-                       const std::unordered_map<NodeId, NodeId> &through, Work &work) {
+                       const std::unordered_map<NodeId, NodeId> &through, const Notes &known,
+                       Work &work) {
     NodeId of = through.at(group.steps.front());
     for (NodeId step : group.steps) of = common_through(through, of, through.at(step));
     for (int climb = 1;; climb *= 2) {
-        if (cancels(graph, {of, through}, group, work)) return true;
+        if (cancels(graph, {of, through}, group, known, work)) return true;
         if (of == root || work.spent()) return false;
         for (int i = 0; i < climb; ++i) of = through.at(of);
     }
@@ -212,7 +216,22 @@ bool cancels_somewhere(Graph &graph, NodeId root, const Group &group,
 
 } // namespace
 
-std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, Work &work) {
+namespace {
+
+// Of coordinates: where the field is asked.
+Notes known_in(Graph &graph, const Cell *region) {
+    Notes out;
+    for (const ir::Type type : {ir::Type::Vec2, ir::Type::Vec3})
+        for (int i = 0; region && i < ir::components(type); ++i)
+            if (const Interval side = region->p[std::size_t(i)]; side.finite())
+                out.given[graph.component(graph.point(type), i)] = side;
+    return out;
+}
+
+} // namespace
+
+std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, const Cell *region,
+                                            Work &work) {
     const std::vector<NodeId> nodes = reached(graph, root, false);
     if (nodes.size() > max_nodes) return {};
     std::map<std::pair<NodeId, int>, Group> groups;
@@ -239,8 +258,9 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, Work &wor
     }
     if (groups.size() > max_groups) return {};
     const std::unordered_map<NodeId, NodeId> through = throughs(graph, root, nodes);
+    const Notes known = known_in(graph, region);
     for (const auto &[key, group] : groups)
-        if (!cancels_somewhere(graph, root, group, through, work))
+        if (!cancels_somewhere(graph, root, group, through, known, work))
             for (NodeId step : group.steps) steps.erase(step);
     for (NodeId id : nodes) // in a loop's body no border is entered
         if (graph[id].op == Op::Loop)

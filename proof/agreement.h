@@ -1,0 +1,12 @@
+// Are two sides of a border one number in every case: whatever the hashes of cells are, and wherever
+// unknown numbers are in their ranges (docs/lipschitz.md, 2.31)?
+#pragma once
+
+#include "proof/border_ranges.h"
+
+namespace fathom::proof {
+
+// `notes`: what is known of the numbers that both are made of. False is no proof of the contrary.
+bool sides_agree(Graph &graph, NodeId a, NodeId b, const Notes &notes, Work &work);
+
+} // namespace fathom::proof
