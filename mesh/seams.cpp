@@ -17,12 +17,18 @@ constexpr int end_cuttings = 3;        // … of what seems to reach the end of 
 constexpr std::size_t most_levels = 6; // that are tried
 constexpr double along_gradient = 0.9; // the cosine from where a number may vary as the field does
 constexpr std::size_t most_runs = 400; // of the tape, for one box
-constexpr int most_strips = 2;         // planes that meet the last one: three do in a corner
+constexpr double most_thinnest =
+    4; // slabs beside each other that are one plane: two lie at its ends
+constexpr std::size_t most_ties = 12;       // of one number
+constexpr std::size_t most_thin_slabs = 16; // thin ones, of a slab that ties tell no more about
+constexpr int most_strips = 2;              // planes that meet the last one: three do in a corner
 
 // A direction that a box may be cut across: an axis, or a number that changes over it.
 struct Across {
     std::size_t axis = 3; // 3: a number
     Level level;
+    std::vector<std::pair<Register, Tie>> ties{}; // others that change alike
+    double play = 0; // between two floats so near what is tied says no more
 };
 
 // Part of a box that may be a seam: what lies between two ends across each of its directions.
@@ -34,6 +40,19 @@ struct Slab {
     std::size_t across = 0; // direction
     float lo = 0, hi = 0;
 };
+
+// What a tied number lies within, by box, from what the other one is held between.
+std::vector<std::array<float, 2>> ranges_tied(const Tie &tie,
+                                              const std::vector<std::array<float, 2>> &ranges) {
+    constexpr float far = std::numeric_limits<float>::infinity();
+    std::vector<std::array<float, 2>> tied;
+    for (const auto &[lo, hi] : ranges) {
+        const double a = tie.share * lo, b = tie.share * hi;
+        tied.push_back({std::nextafter(static_cast<float>(std::min(a, b) + tie.lo), -far),
+                        std::nextafter(static_cast<float>(std::max(a, b) + tie.hi), far)});
+    }
+    return tied;
+}
 
 // Parts of a slab. Round planes, 0 above all, are where things are put: where it lies in the slab it
 // is between two of them.
@@ -85,8 +104,12 @@ struct Look {
                     ranges[k] = {slab.lo, slab.hi}, some = true;
             for (std::size_t k = 0; d < 3 && k < boxes.count; ++k)
                 boxes.lo[d][k] = ranges[k][0], boxes.hi[d][k] = ranges[k][1];
-            if (d >= 3 && some) held.push_back({directions[d].level.where, std::move(ranges)});
+            if (d < 3 || !some) continue;
+            for (const auto &[where, tie] : directions[d].ties)
+                held.push_back({where, ranges_tied(tie, ranges)});
+            held.push_back({directions[d].level.where, std::move(ranges)});
         }
+        std::ranges::stable_sort(held, {}, [](const Held &hold) { return hold.where.step; });
         if (held.empty())
             ranges_over(evaluator, tape, boxes);
         else
@@ -105,9 +128,17 @@ struct Look {
         const Across &across = directions[slab.across];
         return slab.across < 3 ? width : (width + 2 * across.level.error) / across.level.slope;
     }
-    // Whether cutting it has come to its end.
+    // From its end to end, where cutting it has come to its end.
+    double thinnest(const Slab &slab) const {
+        const Across &across = directions[slab.across];
+        return slab.across < 3
+                   ? thin
+                   : std::max({2 * double(ulp_of(slab)), across.play, thin * across.level.slope});
+    }
     bool is_thin(const Slab &slab) const {
-        return (slab.across >= 3 && slab.hi - slab.lo <= 2 * ulp_of(slab)) ||
+        const Across &across = directions[slab.across];
+        return (slab.across >= 3 &&
+                slab.hi - slab.lo <= std::max(2 * double(ulp_of(slab)), across.play)) ||
                width_of(slab) <= thin;
     }
 
@@ -116,13 +147,22 @@ struct Look {
     std::optional<double> thin_out(const Place &place, std::vector<Slab> slabs) {
         double width = 0;
         for (int round = 0; round < most_cuttings && !slabs.empty(); ++round) {
-            if (slabs.size() > most_open) return std::nullopt;
-            std::vector<Slab> next;
+            std::vector<Slab> next, done;
+            std::size_t open_ones = 0;
             for (const Slab &slab : slabs)
-                if (is_thin(slab))
-                    width += width_of(slab);
-                else
+                if (!is_thin(slab)) {
+                    ++open_ones;
                     cut_up(slab, next);
+                } else if (!done.empty() && done.back().hi == slab.lo) {
+                    done.back().hi = slab.hi;
+                } else {
+                    done.push_back(slab);
+                }
+            if (open_ones > most_open || slabs.size() > most_thin_slabs) return std::nullopt;
+            for (const Slab &slab : done) {
+                if (slab.hi - slab.lo > most_thinnest * thinnest(slab)) return std::nullopt;
+                width += width_of(slab);
+            }
             if (width > most_thin * thin) return std::nullopt;
             slabs = std::move(next);
             leave_open(place, slabs);
@@ -149,7 +189,8 @@ struct Look {
         }
         if (!is_thin(last) || at_end()) return std::nullopt;
         // As much again: a plane between two slabs lies in both.
-        const float more = std::max(last.hi - last.lo, 2 * ulp_of(last));
+        const float more = std::max(
+            {last.hi - last.lo, 2 * ulp_of(last), 2 * static_cast<float>(directions[d].play)});
         (high ? last.lo : last.hi) += high ? -more : more;
         rest = place;
         (high ? rest.ends[d][1] : rest.ends[d][0]) = high ? last.lo : last.hi;
@@ -207,6 +248,43 @@ Points places_in(const Point &lo, const Point &hi) {
     return points;
 }
 
+// Whether it seems that a box may hold a seam: from some places, with their values, steps of one and a
+// half of Newton's come nearer and nearer to 0, and never to the other sign, as they soon do where the
+// field changes its sign. Most boxes that ranges do not decide hold surface, or are only loosely known.
+bool may_be_seam(Evaluator &evaluator, const cpu::ShortTape &tape, Points points,
+                 const std::vector<float> &values, const Point &lo, const Point &hi, double thin) {
+    constexpr int steps = 6, few_steps = 3;
+    constexpr double beyond = 1.5;                   // of Newton's step
+    constexpr float nearer = 0.25f, a_little = 0.8f; // than the nearest place at first
+    const auto least = [](const std::vector<float> &of) {
+        float found = std::numeric_limits<float>::infinity();
+        for (const float x : of) found = std::min(found, std::fabs(x));
+        return found;
+    };
+    const bool solid = values[0] <= 0;
+    const float first = least(values);
+    float nearest = first;
+    std::array<std::vector<float>, 4> slopes;
+    for (int step = 0; step <= steps; ++step) {
+        gradients_at(evaluator, tape, points, slopes);
+        for (const float value : slopes[0])
+            if ((value <= 0) != solid && std::fabs(value) > most_thin * thin) return false;
+        nearest = std::min(nearest, least(slopes[0]));
+        if (step == few_steps && nearest > a_little * first) return false;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            double squares = 0;
+            for (std::size_t i = 0; i < 3; ++i)
+                squares += double(slopes[1 + i][k]) * slopes[1 + i][k];
+            if (!(squares > 0)) continue;
+            const double by = beyond * slopes[0][k] / squares;
+            for (std::size_t i = 0; i < 3; ++i)
+                points.at[i][k] = std::clamp(
+                    static_cast<float>(points.at[i][k] - by * slopes[1 + i][k]), lo[i], hi[i]);
+        }
+    }
+    return nearest <= nearer * first;
+}
+
 double cosine(const Level &x, const Level &y) {
     double product = 0, a = 0, b = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -249,6 +327,26 @@ std::vector<Level> chosen_levels(const std::vector<Level> &levels,
     return first;
 }
 
+// The numbers that change as a direction's does, each within so little that it may tell gaps and
+// sheets from what has some thickness.
+void tie_alike(Across &across, const std::vector<Level> &levels, const Point &lo, const Point &hi,
+               double thin) {
+    constexpr double parallel = 0.999999;
+    const Level &level = across.level;
+    // Slabs across an axis hold what changes along it alone.
+    if (std::ranges::count(level.gradient, 0.0) >= 2) return;
+    for (const Level &other : levels) {
+        if (across.ties.size() == most_ties) return;
+        const bool same = other.where.step == level.where.step;
+        if (same || cosine(level, other) < parallel) continue;
+        const Tie tie = tie_of(level, other, lo, hi);
+        const double play = tie.width() / std::fabs(tie.share);
+        if (!(play <= most_thin * thin * level.slope)) continue;
+        across.play = across.ties.empty() ? play : std::min(across.play, play);
+        across.ties.push_back({other.where, tie});
+    }
+}
+
 } // namespace
 
 std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
@@ -260,6 +358,7 @@ std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cp
     const bool solid = values[0] <= 0;
     for (const float value : values)
         if ((value <= 0) != solid) return std::nullopt;
+    if (!may_be_seam(evaluator, tape, points, values, lo, hi, thin)) return std::nullopt;
     Look look{evaluator, tape, boxes, solid, thin, {}, 0};
     Place place;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -271,10 +370,11 @@ std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cp
         std::array<std::vector<float>, 4> slopes;
         gradients_at(evaluator, tape, points, slopes);
         ++look.runs;
-        for (const Level &level :
-             chosen_levels(levels_in(evaluator, tape, boxes, lo, hi), slopes)) {
+        const std::vector<Level> levels = levels_in(evaluator, tape, boxes, lo, hi);
+        for (const Level &level : chosen_levels(levels, slopes)) {
             look.directions.push_back({3, level});
             place.ends.push_back({level.lo, level.hi});
+            tie_alike(look.directions.back(), levels, lo, hi, thin);
         }
         if (closely || look.directions.size() > 3)
             width = look.width_in(place, closely ? most_strips : 0);

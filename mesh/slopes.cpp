@@ -9,8 +9,9 @@ namespace {
 
 using cpu::Kernel;
 
-constexpr double unit_roundoff = 0x1p-22; // four times that of floats: functions are right to that
-constexpr double inward = 1 - 1e-6;       // what sums of doubles may take
+constexpr double unit_roundoff = 0x1.01p-24; // of sums, products and quotients,
+constexpr double of_roots = 0x1p-22;         // … and of what is not rounded right
+constexpr double inward = 1 - 1e-6;          // what sums of doubles may take
 
 struct Interval {
     double lo = 0, hi = 0;
@@ -51,10 +52,11 @@ Varying sum_of_products(const Varying *a, const Varying *b, std::size_t count) {
     Varying made;
     made.known = true;
     for (std::size_t k = 0; k < count; ++k) {
-        const Varying part = chained({{&a[k], b[k].range}, {&b[k], a[k].range}},
-                                     size(a[k].range) * size(b[k].range));
+        const Varying part = chained({{&a[k], b[k].range}, {&b[k], a[k].range}}, 0);
         made.known = made.known && part.known;
-        made.error += static_cast<double>(count) * part.error;
+        // Each is rounded, and then each sum.
+        made.error += part.error + static_cast<double>(count) * unit_roundoff * size(a[k].range) *
+                                       size(b[k].range);
         for (std::size_t i = 0; i < 3; ++i) made.slope[i] = made.slope[i] + part.slope[i];
     }
     return made;
@@ -72,7 +74,7 @@ Varying length_of(const Varying *x, std::size_t count) {
     const double shortest = std::sqrt(least), longest = std::sqrt(most);
     Varying made;
     made.known = true;
-    made.error = static_cast<double>(count) * unit_roundoff * longest;
+    made.error = static_cast<double>(count) * of_roots * longest;
     for (std::size_t k = 0; k < count; ++k) {
         const Interval r = x[k].range;
         Interval share{-1, 1}; // of the component in the length
@@ -170,7 +172,8 @@ struct Slopes {
     Varying at(std::uint32_t address) const {
         Varying found = by_slot[slot(address)];
         if (shared(address)) found = {}, found.known = true;
-        found.range = {ranges.lo[address], ranges.hi[address]};
+        // Of its floats and of the real number.
+        found.range = {ranges.lo[address] - found.error, ranges.hi[address] + found.error};
         found.known = found.known && std::isfinite(found.range.lo) && std::isfinite(found.range.hi);
         return found;
     }
@@ -186,15 +189,46 @@ double least_slope(const Varying &number) {
 
 } // namespace
 
+Tie tie_of(const Level &level, const Level &other, const Point &lo, const Point &hi) {
+    constexpr double of_doubles = 1e-9;    // what their rounding may take, of what is added up
+    constexpr double underflow = 0x1p-140; // of floats, many times over
+    double product = 0, squares = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        product += level.gradient[i] * other.gradient[i];
+        squares += level.gradient[i] * level.gradient[i];
+    }
+    Tie tie;
+    tie.share = product / squares;
+    const Interval share{tie.share, tie.share}, less{-tie.share, -tie.share};
+    // The difference at the middle, and how far from there it may come to be.
+    const Interval middle = Interval{other.middle[0], other.middle[1]} +
+                            less * Interval{level.middle[0], level.middle[1]};
+    const Point at = middle_point(lo, hi);
+    double spread = 2 * (other.error + size(share) * level.error) + underflow;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Interval mine{level.slopes[i][0], level.slopes[i][1]},
+            its{other.slopes[i][0], other.slopes[i][1]};
+        const double reach = std::max(double(hi[i]) - at[i], double(at[i]) - lo[i]);
+        spread += (size(its + less * mine) + of_doubles * (size(its) + size(share * mine))) * reach;
+    }
+    spread += of_doubles * (size(middle) + size(share) * (size({level.lo, level.hi})));
+    tie.lo = middle.lo - spread;
+    tie.hi = middle.hi + spread;
+    return tie;
+}
+
 std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                              const Point &lo, const Point &hi) {
     constexpr std::size_t longest_tape = 500; // steps
     const Field &field = evaluator.field;
     if (tape.steps.size() > longest_tape) return {};
-    boxes.count = 16; // of which one is looked at
+    boxes.count = 16; // of which the first is looked at, and the second: its middle
+    const Point middle = middle_point(lo, hi);
     for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k < boxes.count; ++k)
-            boxes.lo[i][k] = lo[i], boxes.hi[i][k] = hi[i];
+        for (std::size_t k = 0; k < boxes.count; ++k) {
+            boxes.lo[i][k] = k == 1 ? middle[i] : lo[i];
+            boxes.hi[i][k] = k == 1 ? middle[i] : hi[i];
+        }
     cpu::enter_boxes(field.parts, evaluator.ranges, boxes);
     Slopes slopes{field.parts, evaluator.ranges, std::vector<Varying>(field.parts.slot_count)};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -234,9 +268,13 @@ std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, c
                     evaluator.ranges.hi[operands[0]],
                     slope,
                     made.error,
-                    {}};
-        for (std::size_t i = 0; i < 3; ++i)
+                    {},
+                    {},
+                    {evaluator.ranges.lo[operands[0] + 1], evaluator.ranges.hi[operands[0] + 1]}};
+        for (std::size_t i = 0; i < 3; ++i) {
             level.gradient[i] = 0.5 * (made.slope[i].lo + made.slope[i].hi);
+            level.slopes[i] = {made.slope[i].lo, made.slope[i].hi};
+        }
         levels.push_back(level);
     }
     return levels;

@@ -12,7 +12,25 @@ struct Level {
     double slope = 0;                 // along one axis it changes at least so fast, always one way,
     double error = 0;                 // … and its floats are no farther than this from that
     std::array<double, 3> gradient{}; // about
+    std::array<std::array<double, 2>, 3> slopes{}; // along each axis: between these
+    std::array<float, 2> middle{};                 // its float at middle_point lies between these
 };
+
+// A place about the middle of a box.
+inline Point middle_point(const Point &lo, const Point &hi) {
+    Point middle{};
+    for (std::size_t i = 0; i < 3; ++i) middle[i] = 0.5f * (lo[i] + hi[i]);
+    return middle;
+}
+
+// What another number lies within where one does, as far as both change alike over a box: two planes
+// that were turned each by itself are one but for rounding.
+struct Tie {
+    double share = 0;      // so much the other one changes with this one,
+    double lo = 0, hi = 0; // … and its float less that lies between these
+    double width() const { return hi - lo; }
+};
+Tie tie_of(const Level &level, const Level &other, const Point &lo, const Point &hi);
 
 // The numbers of which such an axis is known, in the order of the tape. `boxes` is memory.
 std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,

@@ -70,6 +70,15 @@ TEST_CASE("parts that are flush leave nothing undecided, however they lie") {
              {"(box([1, 0.3, 0.2]) | box([1, 0.3, 0.2]).translate(x: 1)).rotate(0.3, axis: [1, 2, "
               "3])",
               0.12, 1, 0},
+             {"box(1).rotate(0.3, axis: Z) | box(1).rotate(0.3, axis: Z).translate([0.955336489, "
+              "0.295520207, 0])",
+              2, 1, 0},
+             {"box(2).rotate(0.3, axis: [1, 2, 3]) - "
+              "box([1, 1, 2]).rotate(0.2, axis: [1, 2, 3]).rotate(0.1, axis: [1, 2, 3])",
+              6, 1, 1},
+             {"box(1).rotate(0.3, axis: [1, 2, 3]) & "
+              "box(2).rotate(0.2, axis: [1, 2, 3]).rotate(0.1, axis: [1, 2, 3])",
+              1, 1, 0},
          }) {
         INFO(text);
         const mesh::Mended made = mesh::make_certified_mesh(flush_scene(text), fine_cells(40));
