@@ -8,8 +8,10 @@ namespace {
 
 constexpr int deeper = 3;                     // than what is searched without a certificate
 constexpr std::size_t least_growth = 500'000; // of the octree, in nodes
-constexpr double nodes_a_cell = 16;   // that dividing one once may take, with its neighbours
-constexpr int deepest_blind = 4;      // levels that are tried where nothing shows,
+constexpr double nodes_a_cell = 16; // that dividing one once may take, with its neighbours
+constexpr std::size_t few_beside =
+    64;                          // cells in doubt that are small enough: what lies beside is not
+constexpr int deepest_blind = 4; // levels that are tried where nothing shows,
 constexpr std::size_t few_blind = 32; // … or all, in so many drawing cells at most
 constexpr int most_rounds = 12;
 // A round that divides all that is in doubt halves it or more: surface goes through half of a cell's
@@ -39,6 +41,25 @@ struct Patient {
     Cell cell;
     int levels = 0;
 };
+
+// The larger leaves about cells in doubt: the mesh ends in one of them, before a tip that no corner of
+// it shows.
+void add_larger_beside(const Octree &octree, const std::vector<const Cell *> &cells,
+                       std::vector<Patient> &patients) {
+    std::vector<Cell> about;
+    for (const Cell *cell : cells) {
+        const std::size_t first = about.size();
+        add_leaves_about(octree, *cell, about);
+        about.erase(std::remove_if(about.begin() + static_cast<std::ptrdiff_t>(first), about.end(),
+                                   [&](const Cell &near) { return near.level >= cell->level; }),
+                    about.end());
+    }
+    for (const Cell &cell : about) patients.push_back({cell, 1});
+    const auto number = [](const Patient &patient) { return patient.cell.node; };
+    std::ranges::stable_sort(patients, {}, number);
+    const auto same = [](const Patient &x, const Patient &y) { return x.cell.node == y.cell.node; };
+    patients.erase(std::unique(patients.begin(), patients.end(), same), patients.end());
+}
 
 std::array<std::int64_t, 3> block_of(const Lattice &lattice, const Cell &cell) {
     const std::int64_t side = lattice.cells(lattice.level);
@@ -141,10 +162,15 @@ Patients patients(const Made &made, const Certificate &certificate, const Field 
             found[k] = levels_that_show(lattice, evaluator, first[k]->at).value_or(blind);
         });
     for (std::size_t k = 0; k < first.size(); ++k) depths[first[k]->block] = found[k];
+    std::vector<const Cell *> small;
     for (const Doubt &doubt : doubts) { // cells may be one level smaller than is likely to do
         const int levels = lattice.level + depths[doubt.block] - doubt.cell.level;
-        if (levels >= 0) result.all.push_back({doubt.cell, std::max(levels, 1)});
+        if (levels >= 0)
+            result.all.push_back({doubt.cell, std::max(levels, 1)});
+        else
+            small.push_back(&doubt.cell);
     }
+    if (small.size() <= few_beside) add_larger_beside(octree, small, result.all);
     return result;
 }
 
