@@ -298,7 +298,7 @@ struct Reader {
         add_out(sub, render.out,
                 "a .png, .jpg or .exr, a film (.mp4, .webm, .gif, .apng) or .sums; `-`: standard "
                 "output; "
-                "`#`s stand for the frame's number")
+                "`#`s or %04d stand for the frame's number")
             ->type_name("OUT.png")
             ->required();
         for (const auto &rows : {picture_rows(render), film_rows(render), part_rows(render)})
@@ -368,7 +368,7 @@ struct Reader {
         CLI::App *sub = command("mesh", "write the scene's surface as triangles", mesh);
         add_out(sub, mesh.out,
                 "the mesh, by its suffix: .stl, .obj, .ply, .glb or .3mf (`-`: an STL to standard "
-                "output); `{}` stands for the scene's name")
+                "output); `{}` stands for the scene's name, `#`s or %04d for the frame's number")
             ->type_name("OUT.stl")
             ->required();
         sub->add_option("FILE", mesh.files, "the scenes, `-` for standard input")

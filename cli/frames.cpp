@@ -59,7 +59,20 @@ std::vector<Definition> swept(const std::vector<Sweep> &sweeps, const std::vecto
     return values;
 }
 
-std::string frame_name(const std::string &out, int frame) {
+std::string with_places(const std::string &out) {
+    const std::size_t begin = out.rfind('%'), end = out.find('d', begin);
+    if (begin == out.npos || end == out.npos || out.find('#') != out.npos) return out;
+    const std::string_view digits = std::string_view(out).substr(begin + 1, end - begin - 1);
+    const std::optional<double> count = digits.empty() ? 1 : parse_number(digits);
+    if (!count || !(*count >= 1 && *count <= 12) ||
+        digits.find_first_not_of("0123456789") != digits.npos)
+        return out;
+    return out.substr(0, begin) + std::string(static_cast<std::size_t>(*count), '#') +
+           out.substr(end + 1);
+}
+
+std::string frame_name(const std::string &name, int frame) {
+    const std::string out = with_places(name);
     std::size_t last = out.find_last_of('#');
     if (last != out.npos) {
         std::size_t before = out.find_last_not_of('#', last);

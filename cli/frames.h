@@ -27,8 +27,11 @@ std::vector<Definition> swept(const RenderCommand &command, int frame);
 std::vector<Definition> swept(const std::vector<Sweep> &sweeps, const std::vector<int> &film,
                               int frame);
 
-// `out` with the frame's number in place of its last row of `#`s, or before its suffix where it has
-// none.
+// %04d as ####, which frames are named by.
+std::string with_places(const std::string &out);
+
+// `out` with the frame's number in place of its last row of `#`s, or of %04d, or before its suffix
+// where it has neither.
 std::string frame_name(const std::string &out, int frame);
 
 // The first row of tile i of n; that of tile n is the height.

@@ -29,19 +29,6 @@ std::string bytes_of(const v1::Slices &cut, std::size_t k, const SliceCommand &c
                                           format_shortest(cut.slices[k].at)));
 }
 
-// %04d as ####, which frames are named by.
-std::string with_places(const std::string &out) {
-    const std::size_t begin = out.rfind('%'), end = out.find('d', begin);
-    if (begin == out.npos || end == out.npos || out.find('#') != out.npos) return out;
-    const std::string_view digits = std::string_view(out).substr(begin + 1, end - begin - 1);
-    const std::optional<double> count = digits.empty() ? 1 : parse_number(digits);
-    if (!count || !(*count >= 1 && *count <= 12) ||
-        digits.find_first_not_of("0123456789") != digits.npos)
-        return out;
-    return out.substr(0, begin) + std::string(static_cast<std::size_t>(*count), '#') +
-           out.substr(end + 1);
-}
-
 // `out`: with the frame's number, where there are frames; then there is one height.
 std::string file_of(const SliceCommand &command, const std::string &out, std::size_t k) {
     return !command.solid.frames.numbers.empty() ||

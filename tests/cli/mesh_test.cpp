@@ -223,6 +223,9 @@ TEST_CASE("--frames makes a file for each frame, as render numbers them, at its 
             .exit == 0);
     const std::string alone = folder.read("c.obj"), frame = folder.read("b_02.obj");
     CHECK(alone.substr(alone.find("\nv ")) == frame.substr(frame.find("\nv ")));
+    CHECK(shell(folder, "fathom mesh m.sdf --frames 0..2 -o c_%03d.stl " + few).exit == 0);
+    CHECK(!folder.read("c_000.stl").empty());
+    CHECK(!folder.read("c_001.stl").empty());
     CHECK(shell(folder, "fathom slice m.sdf --z 0 --frames 0..2 -o s.svg " + few).exit == 0);
     CHECK(shell(folder, "fathom volume m.sdf --frames 0..2 -o v.nrrd " + few).exit == 0);
     CHECK((fs::exists(folder / "s_0001.svg") && fs::exists(folder / "v_0001.nrrd")));
