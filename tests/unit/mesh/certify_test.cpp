@@ -155,14 +155,14 @@ TEST_CASE("mending has an end, and what is undecided then is listed") {
     CHECK(result.certificate.undecided.size() > 100);
 }
 
-TEST_CASE("mending ends with the first round that gains nothing, however many threads there are") {
-    // Two boards that touch at an angle to the axes, each turned by itself: no number is the same for
-    // both, and no finer cell decides the plane between them.
-    const driver::Compilation c = driver::compile_text(
-        "mesh.sdf",
-        "box([1, 0.3, 0.2]).rotate(0.3, axis: Z) | box([1, 0.3, 0.2]).rotate(0.3, axis: "
-        "Z).translate(x: 0.95533649, y: 0.29552021)",
-        "", {});
+TEST_CASE("mending ends where no round gains, and alike however many threads there are") {
+    // A hole that is filled, each turned by itself: no finer cell decides the edges where the planes
+    // between them meet.
+    const driver::Compilation c =
+        driver::compile_text("mesh.sdf",
+                             "(box(2) - box(1)).rotate(0.3, axis: [1, 2, 3]) | "
+                             "box(1).rotate(0.2, axis: [1, 2, 3]).rotate(0.1, axis: [1, 2, 3])",
+                             "", {});
     REQUIRE(c.good());
     std::vector<mesh::Mended> all;
     for (const unsigned threads : {1u, 3u, 16u}) {
@@ -172,8 +172,6 @@ TEST_CASE("mending ends with the first round that gains nothing, however many th
         const mesh::Mended &result = all.back();
         const mesh::Lattice &lattice = result.made.octree.lattice;
         CHECK_FALSE(result.certificate.certified());
-        for (const mesh::Cell &cell : result.certificate.undecided)
-            CHECK(cell.level == lattice.depth);
         // One for each level, one that still found seams, and the one that showed it was in vain.
         CHECK(result.rounds <= lattice.depth - lattice.level + 2);
         CHECK(result.rounds == all[0].rounds);
