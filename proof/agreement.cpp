@@ -18,13 +18,11 @@ namespace {
 class Agreement {
   public:
     Agreement(Graph &graph, const Notes &notes, Work &work)
-        : graph_(graph), all_work_(work), pruned_(graph, notes, work_) {}
+        : graph_(graph), work_(work), pruned_(graph, notes, work) {}
 
     bool hold(NodeId a, NodeId b, const Assumed &given, int depth);
 
   private:
-    // Sides that take more are not put in one form soon.
-    static constexpr std::size_t most_work = 400'000; // for a case
     static constexpr int max_cases = 600, max_splits = 60, max_depth = 12;
     static constexpr std::size_t max_leaves = 200, max_values = 8;
     static constexpr ir::OpSet of_sums{Op::Add, Op::Sub, Op::Mul, Op::Neg};
@@ -42,26 +40,20 @@ class Agreement {
     std::vector<NodeId> values_of(NodeId choice);
 
     Graph &graph_;
-    Work &all_work_;
-    Work work_; // of this case
+    Work &work_;
     PrunedSides pruned_;
     int cases_ = 0;
 };
 
 bool Agreement::alike_in(NodeId &a, NodeId &b, const Assumed &given) {
-    work_.left = std::min(most_work, all_work_.left);
-    const std::size_t before = work_.left;
     pruned_.enter(given);
     a = pruned_.of(a), b = pruned_.of(b);
-    const bool found = alike(a, b);
-    all_work_.take(before - work_.left);
-    return found && !work_.spent();
+    return alike(a, b);
 }
 
 bool Agreement::hold(NodeId a, NodeId b, const Assumed &given, int depth) {
     if (++cases_ > max_cases || depth > max_splits || work_.spent()) return false;
     if (alike_in(a, b, given)) return true;
-    if (work_.spent()) return false;
     const std::vector<NodeId> all = parts(a, b);
     std::optional<NodeId> open;
     std::vector<NodeId> values;

@@ -41,26 +41,9 @@ namespace {
 
 constexpr std::size_t max_groups = 48;
 
-// What is known where the field is asked, and whether sides are compared case by case, too, which
-// takes long (agreement.h): until that was in vain too often.
-struct Known {
-    Notes notes;
-    bool by_cases = false;
-    mutable int left = 2; // so many long comparisons may be in vain
-
-    bool agree(Graph &graph, NodeId a, NodeId b, const Notes &sides, Work &work) const {
-        constexpr std::size_t is_long = 100'000;
-        if (!by_cases || left == 0) return false;
-        const std::size_t before = work.left;
-        if (sides_agree(graph, a, b, sides, work)) return true;
-        if (before - work.left > is_long) --left;
-        return false;
-    }
-};
-
 // Is the field the same on all sides of the borders with these K?
 bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, const Counts &counts,
-             Met &met, const Known &known, Work &work) {
+             Met &met, const Notes &known, Work &work) {
     const bool one = counts.range.is_point();
     const NodeId whole = one ? graph.number(counts.range.lo)
                              : graph.make(Op::ToFloat, ir::Type::Float,
@@ -69,7 +52,7 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
                  little_angle = graph.fresh_var(ir::Type::Float),
                  radius = graph.fresh_var(ir::Type::Float);
     std::map<std::vector<std::uint32_t>, NodeId> unknown;
-    Notes notes = known.notes;
+    Notes notes = known;
     std::vector<NodeId> sides;
     bool same_for_all = true;
     for (const Side side : {Side::Before, Side::At, Side::After}) {
@@ -82,7 +65,7 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
         same_for_all =
             same_for_all && (same(graph, sides.front(), sides.back(), &work) ||
                              same_with_mixes_as_sums(graph, sides.front(), sides.back(), &work) ||
-                             known.agree(graph, sides.front(), sides.back(), notes, work));
+                             sides_agree(graph, sides.front(), sides.back(), notes, work));
         if (!same_for_all && met.thresholds.empty() && !met.parity) return false;
     }
     return same_for_all;
@@ -91,7 +74,7 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
 // By cases for K: even and odd, and beside each number that it is compared with. `met` gets those
 // that it is compared with in some cases alone.
 bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool half, Met &met,
-                      const Known &known, Work &work) {
+                      const Notes &known, Work &work) {
     constexpr std::size_t most_thresholds = 8;
     if (met.thresholds.empty() && !met.parity) return false;
     std::vector<double> whole;
@@ -123,7 +106,7 @@ bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool h
     return true;
 }
 
-bool cancels(Graph &graph, const Seen &seen, const Group &group, const Known &known, Work &work) {
+bool cancels(Graph &graph, const Seen &seen, const Group &group, const Notes &known, Work &work) {
     constexpr int most_rounds = 3; // of cases that lead to further ones
     bool halves = false, wholes = false;
     for (NodeId step : group.steps) (graph[step].op == Op::Round ? halves : wholes) = true;
@@ -220,7 +203,7 @@ std::unordered_map<NodeId, NodeId> throughs(const Graph &graph, NodeId root,
 // The least expression that all uses of a group's steps go through, then larger ones, up to the
 // whole field.
 bool cancels_somewhere(Graph &graph, NodeId root, const Group &group,
-                       const std::unordered_map<NodeId, NodeId> &through, const Known &known,
+                       const std::unordered_map<NodeId, NodeId> &through, const Notes &known,
                        Work &work) {
     NodeId of = through.at(group.steps.front());
     for (NodeId step : group.steps) of = common_through(through, of, through.at(step));
@@ -236,12 +219,12 @@ bool cancels_somewhere(Graph &graph, NodeId root, const Group &group,
 namespace {
 
 // Of coordinates: where the field is asked.
-Known known_in(Graph &graph, const Cell *region) {
-    Known out;
+Notes known_in(Graph &graph, const Cell *region) {
+    Notes out;
     for (const ir::Type type : {ir::Type::Vec2, ir::Type::Vec3})
         for (int i = 0; region && i < ir::components(type); ++i)
             if (const Interval side = region->p[std::size_t(i)]; side.finite())
-                out.notes.given[graph.component(graph.point(type), i)] = side;
+                out.given[graph.component(graph.point(type), i)] = side;
     return out;
 }
 
@@ -275,10 +258,9 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, const Cel
     }
     if (groups.size() > max_groups) return {};
     const std::unordered_map<NodeId, NodeId> through = throughs(graph, root, nodes);
-    const Known quickly = known_in(graph, region), by_cases{quickly.notes, true};
+    const Notes known = known_in(graph, region);
     for (const auto &[key, group] : groups)
-        if (!cancels_somewhere(graph, root, group, through, quickly, work) &&
-            !cancels_somewhere(graph, root, group, through, by_cases, work))
+        if (!cancels_somewhere(graph, root, group, through, known, work))
             for (NodeId step : group.steps) steps.erase(step);
     for (NodeId id : nodes) // in a loop's body no border is entered
         if (graph[id].op == Op::Loop)
