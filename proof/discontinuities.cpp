@@ -11,10 +11,8 @@
 #include "proof/discontinuities.h"
 
 #include "ir/passes/inline.h"
-#include "proof/agreement.h"
 #include "proof/border_sides.h"
 #include "proof/continuity.h"
-#include "proof/machine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +41,7 @@ constexpr std::size_t max_groups = 48;
 
 // Is the field the same on all sides of the borders with these K?
 bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, const Counts &counts,
-             Met &met, const Notes &known, Work &work) {
+             Met &met, Work &work) {
     const bool one = counts.range.is_point();
     const NodeId whole = one ? graph.number(counts.range.lo)
                              : graph.make(Op::ToFloat, ir::Type::Float,
@@ -52,7 +50,7 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
                  little_angle = graph.fresh_var(ir::Type::Float),
                  radius = graph.fresh_var(ir::Type::Float);
     std::map<std::vector<std::uint32_t>, NodeId> unknown;
-    Notes notes = known;
+    Notes notes;
     std::vector<NodeId> sides;
     bool same_for_all = true;
     for (const Side side : {Side::Before, Side::At, Side::After}) {
@@ -64,8 +62,7 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
         if (border.limit.failed || border.moving.failed) return false;
         same_for_all =
             same_for_all && (same(graph, sides.front(), sides.back(), &work) ||
-                             same_with_mixes_as_sums(graph, sides.front(), sides.back(), &work) ||
-                             sides_agree(graph, sides.front(), sides.back(), notes, work));
+                             same_with_mixes_as_sums(graph, sides.front(), sides.back(), &work));
         if (!same_for_all && met.thresholds.empty() && !met.parity) return false;
     }
     return same_for_all;
@@ -74,7 +71,7 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
 // By cases for K: even and odd, and beside each number that it is compared with. `met` gets those
 // that it is compared with in some cases alone.
 bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool half, Met &met,
-                      const Notes &known, Work &work) {
+                      Work &work) {
     constexpr std::size_t most_thresholds = 8;
     if (met.thresholds.empty() && !met.parity) return false;
     std::vector<double> whole;
@@ -96,7 +93,7 @@ bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool h
             const bool odd = std::fmod(std::fabs(range.lo), 2) == 1;
             if (range.is_point() && odd != (parity == 1)) continue;
             Met more;
-            if (cancels(graph, seen, group, half, {parity, range}, more, known, work)) continue;
+            if (cancels(graph, seen, group, half, {parity, range}, more, work)) continue;
             met.parity = met.parity || more.parity;
             for (double t : more.thresholds)
                 if (std::ranges::find(met.thresholds, t) == met.thresholds.end())
@@ -106,20 +103,20 @@ bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool h
     return true;
 }
 
-bool cancels(Graph &graph, const Seen &seen, const Group &group, const Notes &known, Work &work) {
+bool cancels(Graph &graph, const Seen &seen, const Group &group, Work &work) {
     constexpr int most_rounds = 3; // of cases that lead to further ones
     bool halves = false, wholes = false;
     for (NodeId step : group.steps) (graph[step].op == Op::Round ? halves : wholes) = true;
     for (const bool half : {false, true}) {
         if (half ? !halves : !wholes) continue;
         Met met;
-        bool is_proved = cancels(graph, seen, group, half, {}, met, known, work);
+        bool known = cancels(graph, seen, group, half, {}, met, work);
         std::size_t before = std::size_t(-1);
-        for (int i = 0; i < most_rounds && !is_proved && met.thresholds.size() != before; ++i) {
+        for (int i = 0; i < most_rounds && !known && met.thresholds.size() != before; ++i) {
             before = met.thresholds.size();
-            is_proved = cancels_by_cases(graph, seen, group, half, met, known, work);
+            known = cancels_by_cases(graph, seen, group, half, met, work);
         }
-        if (!is_proved) return false;
+        if (!known) return false;
     }
     return true;
 }
@@ -203,12 +200,11 @@ std::unordered_map<NodeId, NodeId> throughs(const Graph &graph, NodeId root,
 // The least expression that all uses of a group's steps go through, then larger ones, up to the
 // whole field.
 bool cancels_somewhere(Graph &graph, NodeId root, const Group &group,
-                       const std::unordered_map<NodeId, NodeId> &through, const Notes &known,
-                       Work &work) {
+                       const std::unordered_map<NodeId, NodeId> &through, Work &work) {
     NodeId of = through.at(group.steps.front());
     for (NodeId step : group.steps) of = common_through(through, of, through.at(step));
     for (int climb = 1;; climb *= 2) {
-        if (cancels(graph, {of, through}, group, known, work)) return true;
+        if (cancels(graph, {of, through}, group, work)) return true;
         if (of == root || work.spent()) return false;
         for (int i = 0; i < climb; ++i) of = through.at(of);
     }
@@ -216,22 +212,7 @@ bool cancels_somewhere(Graph &graph, NodeId root, const Group &group,
 
 } // namespace
 
-namespace {
-
-// Of coordinates: where the field is asked.
-Notes known_in(Graph &graph, const Cell *region) {
-    Notes out;
-    for (const ir::Type type : {ir::Type::Vec2, ir::Type::Vec3})
-        for (int i = 0; region && i < ir::components(type); ++i)
-            if (const Interval side = region->p[std::size_t(i)]; side.finite())
-                out.given[graph.component(graph.point(type), i)] = side;
-    return out;
-}
-
-} // namespace
-
-std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, const Cell *region,
-                                            Work &work) {
+std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, Work &work) {
     const std::vector<NodeId> nodes = reached(graph, root, false);
     if (nodes.size() > max_nodes) return {};
     std::map<std::pair<NodeId, int>, Group> groups;
@@ -258,9 +239,8 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, const Cel
     }
     if (groups.size() > max_groups) return {};
     const std::unordered_map<NodeId, NodeId> through = throughs(graph, root, nodes);
-    const Notes known = known_in(graph, region);
     for (const auto &[key, group] : groups)
-        if (!cancels_somewhere(graph, root, group, through, known, work))
+        if (!cancels_somewhere(graph, root, group, through, work))
             for (NodeId step : group.steps) steps.erase(step);
     for (NodeId id : nodes) // in a loop's body no border is entered
         if (graph[id].op == Op::Loop)

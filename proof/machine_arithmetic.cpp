@@ -83,7 +83,7 @@ void Step::quotient() {
         set(c, q, scaled(inverse, sum(grad(0, c), scaled(-q, grad(1, c)))), odd(0, c));
     }
     if (singular) return fail(Trouble::Singular);
-    // |x y'|/y^2, by what is known of y' (2.16, 2.33); of a vector over a number with x's length
+    // |x y'|/y^2, by what is known of y' (2.16, 2.31); of a vector over a number with x's length
     const Slot divisor = in.args[1];
     const double length = n == 1 ? ratio : up(std::sqrt(squares), n + 4);
     const double by_divisor =

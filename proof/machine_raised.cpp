@@ -1,5 +1,5 @@
 // What a scalar's own size says of its gradient: |grad v| <= c v (docs/lipschitz.md, 2.16), and of
-// what is a power of a Lipschitz function, and a number (2.33). Both hold where slopes have no bound.
+// what is a power of a Lipschitz function, and a number (2.31). Both hold where slopes have no bound.
 #include "proof/instruction_rules.h"
 
 #include <algorithm>

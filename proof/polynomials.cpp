@@ -1,7 +1,6 @@
 #include "proof/polynomials.h"
 
 #include "proof/continuity.h"
-#include "proof/enclosed.h"
 #include "proof/exact.h"
 
 #include <algorithm>
@@ -102,17 +101,12 @@ std::optional<Polynomial> Expansion::of(NodeId id) {
     return out;
 }
 
-// a + by*b. Of terms of which no more is left than double precision loses nothing is.
+// a + by*b.
 std::optional<Polynomial> Expansion::sum_of(NodeId a, double by, NodeId b) {
     auto sum = of(a);
     const auto more = of(b);
     if (!sum || !more || !take(more->size())) return {};
-    for (const auto &[m, x] : *more) {
-        double &own = (*sum)[m];
-        const double lost = lost_by_doubles * std::max(std::fabs(own), std::fabs(by * x));
-        own += by * x;
-        if (std::fabs(own) <= lost) own = 0;
-    }
+    for (const auto &[m, x] : *more) (*sum)[m] += by * x;
     return sum->size() > max_terms ? std::optional<Polynomial>() : sum;
 }
 
