@@ -106,7 +106,8 @@ TEST_CASE("no bound of an example or a library entry grows unnoticed") {
     for (const std::string &name : rests.rounding)
         std::printf("  rounding not bounded: %s\n", name.c_str());
     CHECK(rests.library.size() <= 108);
-    // 36: since its bound follows a param, rough_icosahedron is divided by less at small values.
-    CHECK(rests.rounding.size() <= 36);
+    // 37: what has a smaller bound is divided by less, and so is less exact beside the tolerance: of
+    // rough_icosahedron, whose bound follows a param, and of an entry whose slope falls (2.31).
+    CHECK(rests.rounding.size() <= 37);
     CHECK(rests.stated.size() <= 1);
 }
