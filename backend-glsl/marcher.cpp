@@ -122,8 +122,8 @@ int steps_in_one_pass(double bound, double lengths) {
 std::string marcher_text(const MarcherOptions &options) {
     const Values values = values_of(options);
     return (options.pick ? "\nlayout(location = 1) out vec4 fathom_pick;\n" : "") +
-           expand("march", values) + expand("corner", values) + expand("shade", values) +
-           expand("picture", values);
+           expand("march", values) + expand("corner", values) + expand("shadow", values) +
+           expand("shade", values) + expand("picture", values);
 }
 
 std::string probe_text(MarcherOptions options) {

@@ -126,7 +126,11 @@
 //   g_i/x_i, the first of equals. slope = 1 where `Frame::unit_slope`, or where no bound is above 1
 //   (so that no slope is) and g_k >= nearly*x_k; else max(|gradient(p + x_k*n, h)|, min(slope at
 //   p, 1), min_slope): where the samples of a gradient lie across a crease, it is too small.
-//   occlusion = sum of 2^-i * clamp(1 - g_i/(slope*x_i), 0, 1), divided by the sum of the 2^-i
+//   slope_i = slope; but where own_i, the greatest of slope at p, min_slope and g_j/x_j up to j = i, is
+//   below it (not where `Frame::unit_slope`): slope + (own_i - slope)*clamp(g_i/(own_i*x_i), 0, 1). So
+//   what rises as the surface itself does is open, and what closes begins to without an edge, however
+//   steep its field is.
+//   occlusion = sum of 2^-i * clamp(1 - g_i/(slope_i*x_i), 0, 1), divided by the sum of the 2^-i
 //
 // SHADOW (thesis, 4.2.1: from the light towards the point, so that no ray has to leave a surface
 // slowly)

@@ -130,11 +130,18 @@ std::vector<float> find_occlusion(Worker &worker, const Points &at) {
     }
     std::vector<float> sum(count, 0.0f);
     float weight = 1, total = 0;
+    std::vector<float> own = at.slope; // what the surface itself rises by: what rises so is open
     for (std::size_t i = 0; i < samples; ++i) {
         weight *= 0.5f;
         total += weight;
-        for (std::size_t k = 0; k < count; ++k)
-            sum[k] += weight * clamp(1.0f - g[i][k] / (slopes[k] * away(i)), 0.0f, 1.0f);
+        for (std::size_t k = 0; k < count; ++k) {
+            const float rise = g[i][k] / away(i);
+            float slope = slopes[k];
+            own[k] = std::max({own[k], rise, shading::min_slope});
+            if (!worker.stage.frame.unit_slope && own[k] < slope)
+                slope += (own[k] - slope) * clamp(rise / own[k], 0.0f, 1.0f);
+            sum[k] += weight * clamp(1.0f - rise / slope, 0.0f, 1.0f);
+        }
     }
     for (float &s : sum) s /= total;
     return sum;

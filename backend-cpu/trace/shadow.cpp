@@ -1,5 +1,5 @@
 // How much of a light arrives: ir/shading.h's SHADOW and PENUMBRA over batches of rays. Names and
-// order follow backend-glsl/templates/shade.glsl.
+// order follow backend-glsl/templates/shadow.glsl.
 #include "backend-cpu/trace/rays.h"
 
 #include "ir/shading.h"

@@ -269,6 +269,7 @@ TEST_CASE("two texts of one solid give one picture") {
         {"sphere(1)", "implicit(p => length(p) - 1, within: ball(1.05))"},
         {"sphere(1)", "implicit(p => length(p) - 1, within: ball(3))"},
         {"sphere(1)", "implicit(p => 7 * (length(p) - 1), within: ball(2))", 8 * few},
+        {"sphere(1)", "implicit(p => dot(p, p) - 1, within: ball(2))", 3 * few},
         {"sphere(1)", "sphere(0.5).scale(2)"},
         {"torus(1, 0.3)", "implicit(p => length([length(p.xz) - 1, p.y]) - 0.3, within: ball(3))"},
         {"box(1.5) | sphere(1)", "sphere(1) | (box(1.5) & box(9))"},

@@ -242,8 +242,9 @@ Frame frame_of(std::string_view name, const Values &values) {
         return {marched + "void ahead(vec3 q, vec3 l, float s, bool mark, float shadow, float "
                           "angle, float margin) {\n    while (s > margin) {\n",
                 "    }\n}\n" + end};
-    if (name == "shade") return {marched, end};
-    if (name == "picture") return {marched + expanded("shade"), end};
+    if (name == "shadow") return {marched, end};
+    if (name == "shade") return {marched + expanded("shadow"), end};
+    if (name == "picture") return {marched + expanded("shadow") + expanded("shade"), end};
     if (name == "probe")
         return {version + inputs.substr(inputs.find("uniform")) + cells + cache + expanded("march"),
                 ""};
