@@ -26,6 +26,7 @@ Values values_of(const MarcherOptions &options) {
     namespace shading = ir::shading;
     const std::string far = "100.0 * max(" + float_literal(options.radius) +
                             ", length(fathom_origin - " + options.center + "))";
+    const bool closest = !options.unit_slope || options.films;
     return {
         {"BOXED", flag(options.boxed)},
         {"UNIT_SLOPE", flag(options.unit_slope)},
@@ -88,6 +89,9 @@ Values values_of(const MarcherOptions &options) {
         {"FILM_LOOKS", fmt::to_string(shading::film_looks)},
         {"FILM_NEAR", float_literal(shading::film_near)},
         {"FILM_LOOK", float_literal(shading::film_look)},
+        {"FILM_FLAT", float_literal(shading::film_flat)},
+        {"FILM_BEYOND", float_literal(shading::film_beyond)},
+        {"FILM_APART", float_literal(shading::film_apart)},
         {"FILM_TURN", float_literal(shading::film_turn)},
         {"DARKEST", float_literal(shading::darkest)},
         {"NO_ESTIMATE", options.estimate > 0 ? " && d > 0.0" : ""},
@@ -96,7 +100,9 @@ Values values_of(const MarcherOptions &options) {
         {"FLAT", options.shaded_apart ? "false" : "least >= " + float_literal(shading::nearly)},
         {"GOLDEN", float_literal(0.618033989f)},
         {"SEARCHES", fmt::to_string(2 + shading::penumbra_turns)},
-        {"ALL_TAPS", fmt::to_string((options.unit_slope ? 4 : 8) + shading::occlusion_samples)},
+        {"CLOSEST", flag(closest)},
+        {"ALL_TAPS", fmt::to_string(4 + shading::occlusion_samples + (closest ? 4 : 0) +
+                                    (options.films ? 2 : 0))},
         {"OCCLUSION_TOTAL", float_literal(1 - std::ldexp(1.0, -shading::occlusion_samples))},
         {"OCCLUSION_REACH", float_literal(shading::occlusion_reach)},
         {"OCCLUSION_SAMPLES", float_literal(float{shading::occlusion_samples})},

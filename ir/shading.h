@@ -130,7 +130,14 @@
 //   below it (not where `Frame::unit_slope`): slope + (own_i - slope)*clamp(g_i/(own_i*x_i), 0, 1). So
 //   what rises as the surface itself does is open, and what closes begins to without an edge, however
 //   steep its field is.
-//   occlusion = sum of 2^-i * clamp(1 - g_i/(slope_i*x_i), 0, 1), divided by the sum of the 2^-i
+//   closed_i = clamp(1 - g_i/(slope_i*x_i), 0, 1)
+//   In a scene that may have films (TOUCHES, `Frame::films`), where what is nearest to the sample k is
+//   one, it closes nothing. With v = gradient(p + x_k*n, h) and u = v/|v|: m = p + x_k*n - g_k*u/|v|, and
+//   where |g(m)| < film_flat*g_k, m is moved by -g(m)*u/|v|; a film is where then
+//   g(m - film_beyond*tolerance(t)*u) >= 0. Its distance by its slope from the sample i is
+//   b_i = |(p + x_i*n - m).v|, and closed_i is multiplied by clamp(film_apart*(1 - g_i/b_i), 0, 1): what
+//   is nearer than the film still closes.
+//   occlusion = sum of 2^-i * closed_i, divided by the sum of the 2^-i
 //
 // SHADOW (thesis, 4.2.1: from the light towards the point, so that no ray has to leave a surface
 // slowly)
@@ -216,6 +223,9 @@ inline constexpr float refined = 1.0f / 2048; // of a tolerance
 inline constexpr float across = 1.0f / 32; // the slope behind a touch, from which on it is no graze
 inline constexpr float probe = 8;          // slack/4: the first step beyond what is touched
 inline constexpr int film_steps = 4;       // to what may be a film
+inline constexpr float film_flat = 0.01f;  // of a sample's value
+inline constexpr float film_beyond = 4;    // tolerances
+inline constexpr float film_apart = 4;     // what is a quarter nearer than the film closes in full
 inline constexpr float film_near = 8, film_look = 64; // slack/4
 inline constexpr int film_looks = 24;                 // on a circle,
 inline constexpr float film_turn = 0.261799388f;      // so far apart

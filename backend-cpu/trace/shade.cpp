@@ -89,20 +89,37 @@ void find_materials(Worker &worker, Points &at) {
     }
 }
 
-// How much of the surroundings five samples along the normal find closed (thesis, 4.2.1).
-std::vector<float> find_occlusion(Worker &worker, const Points &at) {
-    constexpr auto samples = static_cast<std::size_t>(shading::occlusion_samples);
+constexpr auto looks = static_cast<std::size_t>(shading::occlusion_samples);
+
+// What the samples along the normals find: values, and the slope where a sample is closed most.
+struct Surroundings {
+    float gap = 0; // between samples
+    std::array<std::vector<float>, looks> g;
+    std::vector<std::size_t> closest;
+    std::vector<float> slope;
+    std::vector<Vec> gradient; // there; 0 where nobody asked
+    std::vector<Vec> film;     // a place of the film that is nearest there
+    std::vector<char> on_film; // whether there is one
+    float away(std::size_t i) const { return gap * static_cast<float>(i + 1); }
+    Vec place(const Points &at, std::size_t k, std::size_t i) const {
+        return at.p[k] + away(i) * at.n[k];
+    }
+};
+
+Surroundings look_around(Worker &worker, const Points &at) {
     const std::size_t count = at.size();
     const bool apart = worker.stage.shaded_apart;
-    const float reach = worker.stage.shading.occlusion_reach / static_cast<float>(samples);
-    const auto away = [&](std::size_t i) { return reach * static_cast<float>(i + 1); };
-    std::array<std::vector<float>, samples> g;
-    std::vector<std::size_t> closest(count, 0);
-    for (std::size_t i = 0; i < samples; ++i) {
-        const float x = away(i);
+    const ir::Frame &frame = worker.stage.frame;
+    Surroundings around;
+    around.gap = worker.stage.shading.occlusion_reach / static_cast<float>(looks);
+    std::array<std::vector<float>, looks> &g = around.g;
+    std::vector<std::size_t> &closest = around.closest;
+    closest.resize(count), around.slope.resize(count, 1), around.gradient.resize(count, Vec(0));
+    for (std::size_t i = 0; i < looks; ++i) {
+        const float x = around.away(i);
         g[i].resize(count);
         for (std::size_t k = 0; k < count; ++k) {
-            worker.points.set(0, k, at.p[k] + x * at.n[k]);
+            worker.points.set(0, k, around.place(at, k, i));
             worker.limits[k] = x;
         }
         if (apart)
@@ -110,37 +127,89 @@ std::vector<float> find_occlusion(Worker &worker, const Points &at) {
         else
             distances(worker, worker.points, g[i].data(), count, worker.limits.data());
         for (std::size_t k = 0; k < count; ++k)
-            if (g[i][k] / x < g[closest[k]][k] / away(closest[k])) closest[k] = i;
+            if (g[i][k] / x < g[closest[k]][k] / around.away(closest[k])) closest[k] = i;
     }
-    std::vector<float> slopes(count, 1.0f);
-    if (!worker.stage.frame.unit_slope) { // of what closes most
-        std::vector<std::size_t> steep;
-        std::vector<Vec> points;
-        std::vector<float> arms;
-        for (std::size_t k = 0; k < count; ++k) {
-            const float x = away(closest[k]);
-            if (!apart && g[closest[k]][k] >= shading::nearly * x) continue;
-            steep.push_back(k), points.push_back(at.p[k] + x * at.n[k]), arms.push_back(at.h[k]);
+    if (frame.unit_slope && !frame.films) return around;
+    std::vector<std::size_t> steep;
+    std::vector<Vec> points;
+    std::vector<float> arms;
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t i = closest[k];
+        if (!apart && g[i][k] >= shading::nearly * around.away(i)) continue;
+        steep.push_back(k), points.push_back(around.place(at, k, i)), arms.push_back(at.h[k]);
+    }
+    std::vector<Vec> found(steep.size());
+    gradients(worker, points.data(), arms.data(), found.data(), steep.size());
+    for (std::size_t j = 0; j < steep.size(); ++j) {
+        const std::size_t k = steep[j];
+        around.gradient[k] = found[j];
+        if (!frame.unit_slope)
+            around.slope[k] =
+                std::max({length(found[j]), std::min(at.slope[k], 1.0f), shading::min_slope});
+    }
+    return around;
+}
+
+// Whether what is nearest to the sample that is closed most is a film (shading.h, OCCLUSION).
+void find_films(Worker &worker, const Points &at, Surroundings &around) {
+    const Lengths lengths(worker.stage);
+    around.film.resize(at.size()), around.on_film.assign(at.size(), 0);
+    std::vector<std::size_t> maybe;
+    for (std::size_t k = 0; k < at.size(); ++k) {
+        const std::size_t i = around.closest[k];
+        const Vec u = around.gradient[k];
+        if (!(dot(u, u) > 0)) continue;
+        around.film[k] = around.place(at, k, i) - around.g[i][k] / dot(u, u) * u;
+        maybe.push_back(k);
+    }
+    std::vector<float> values(maybe.size());
+    const auto evaluate_at = [&](float beyond) {
+        for (std::size_t j = 0; j < maybe.size(); ++j) {
+            const std::size_t k = maybe[j];
+            const float step = beyond * lengths.tolerance(at.t[k]);
+            const Vec u = around.gradient[k];
+            worker.points.set(0, j, around.film[k] - step / length(u) * u);
         }
-        std::vector<Vec> found(steep.size());
-        gradients(worker, points.data(), arms.data(), found.data(), steep.size());
-        for (std::size_t j = 0; j < steep.size(); ++j)
-            slopes[steep[j]] = std::max(
-                {length(found[j]), std::min(at.slope[steep[j]], 1.0f), shading::min_slope});
+        shaded_values(worker, worker.points, values.data(), maybe.size());
+    };
+    evaluate_at(0);
+    std::vector<std::size_t> flat;
+    for (std::size_t j = 0; j < maybe.size(); ++j) {
+        const std::size_t k = maybe[j];
+        const Vec u = around.gradient[k];
+        if (!(std::fabs(values[j]) < shading::film_flat * around.g[around.closest[k]][k])) continue;
+        around.film[k] = around.film[k] - values[j] / dot(u, u) * u;
+        flat.push_back(k);
     }
-    std::vector<float> sum(count, 0.0f);
-    float weight = 1, total = 0;
+    maybe = std::move(flat);
+    evaluate_at(shading::film_beyond);
+    for (std::size_t j = 0; j < maybe.size(); ++j) around.on_film[maybe[j]] = values[j] >= 0;
+}
+
+// How much of the surroundings five samples along the normal find closed (thesis, 4.2.1).
+std::vector<float> find_occlusion(Worker &worker, const Points &at) {
+    const ir::Frame &frame = worker.stage.frame;
+    Surroundings around = look_around(worker, at);
+    if (frame.films) find_films(worker, at, around);
+    std::vector<float> sum(at.size(), 0.0f);
     std::vector<float> own = at.slope; // what the surface itself rises by: what rises so is open
-    for (std::size_t i = 0; i < samples; ++i) {
+    float weight = 1, total = 0;
+    for (std::size_t i = 0; i < looks; ++i) {
         weight *= 0.5f;
         total += weight;
-        for (std::size_t k = 0; k < count; ++k) {
-            const float rise = g[i][k] / away(i);
-            float slope = slopes[k];
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            const float rise = around.g[i][k] / around.away(i);
+            float slope = around.slope[k];
             own[k] = std::max({own[k], rise, shading::min_slope});
-            if (!worker.stage.frame.unit_slope && own[k] < slope)
+            if (!frame.unit_slope && own[k] < slope)
                 slope += (own[k] - slope) * clamp(rise / own[k], 0.0f, 1.0f);
-            sum[k] += weight * clamp(1.0f - rise / slope, 0.0f, 1.0f);
+            float closed = clamp(1.0f - rise / slope, 0.0f, 1.0f);
+            if (frame.films && around.on_film[k]) {
+                const Vec off = around.place(at, k, i) - around.film[k];
+                const float film = std::max(std::fabs(dot(off, around.gradient[k])), 1e-30f);
+                closed *= clamp(shading::film_apart * (1 - around.g[i][k] / film), 0.0f, 1.0f);
+            }
+            sum[k] += weight * closed;
         }
     }
     for (float &s : sum) s /= total;

@@ -33,10 +33,11 @@ $if TWICE
 $else
     int done = 0;
 $end
-$# The gradient's four points; along the normal that they give, the occlusion's five; and where these
-$# are closed most, the gradient again.
+$# The gradient's four points; along the normal that they give, the occlusion's five; where these are
+$# closed most, the gradient again; and on what is nearest there, and beyond it, whether it is a film.
 $if !SKIP_SHADING
-    vec3 sum = vec3(0.0);
+    vec3 sum = vec3(0.0), towards = vec3(0.0), film = vec3(0.0);
+    bool on_film = false;
     float least = 1e30, x = 0.0;
     float g1 = 0.0, g2 = 0.0, g3 = 0.0, g4 = 0.0, g5 = 0.0; // over their distances from p
     for (int i = $ZERO + done; i < taps$AND_PRESENT; ++i) {
@@ -45,6 +46,10 @@ $if !SKIP_SHADING
         vec3 place = mix(p + away * n, above, float(i < 4));
         vec3 e = fathom_corner(i - 9 * int(i > 3));
         if (!outward) place += h * e;
+$if FILMS
+        if (i == 13) place = film;
+        if (i == 14) place = film - $FILM_BEYOND * fathom_tolerance(t) * normalize(towards);
+$end
         float f = $SHADED(place);
         if (outward) {
             f /= away;
@@ -57,14 +62,35 @@ $if !SKIP_SHADING
                 least = f;
                 x = away;
             }
-$if !UNIT_SLOPE
+$if CLOSEST
 $if !SHADED_APART
             if (i == 8 && least >= $NEARLY) break;
 $end
 $end
             continue;
         }
+$if FILMS
+        if (i == 13) {
+            if (!(abs(f) < $FILM_FLAT * least * x)) break;
+            film -= f / dot(towards, towards) * towards;
+            continue;
+        }
+        if (i == 14) {
+            on_film = f >= 0.0;
+            break;
+        }
+$end
         sum += f * e;
+$if CLOSEST
+        if (i == 12) {
+            towards = 0.75 / h * sum;
+$if FILMS
+            float square = dot(towards, towards);
+            if (!(square > 0.0)) break;
+            film = p + x * n - least * x / square * towards;
+$end
+        }
+$end
 $if !TWICE
         if (i == 3) {
             g = 0.75 / h * sum;
@@ -77,25 +103,34 @@ $end
 $if UNIT_SLOPE
     float rise = 1.0;
 $else
-    float rise = length(0.75 / h * sum);
+    float rise = length(towards);
     rise = $FLAT ? 1.0 : max(max(rise, min(slope, 1.0)), $MIN_SLOPE);
 $end
     if (taps > 4) {
-        vec4 few = vec4(g1, g2, g3, g4);
-        vec4 slopes = vec4(rise);
-        float last = rise;
+        vec4 rises = vec4(g1, g2, g3, g4), slopes = vec4(rise);
+        float slope5 = rise;
 $if !UNIT_SLOPE
 $# What rises as the surface itself does is open, whatever the slope of what closes most.
-        vec4 own = max(few, max(slope, $MIN_SLOPE));
+        vec4 own = max(rises, max(slope, $MIN_SLOPE));
         own.y = max(own.x, own.y);
         own.zw = max(own.zw, own.y);
         own.w = max(own.z, own.w);
         float own5 = max(own.w, g5);
-        slopes += min(own - rise, 0.0) * clamp(few / own, 0.0, 1.0);
-        last += min(own5 - rise, 0.0) * clamp(g5 / own5, 0.0, 1.0);
+        slopes += min(own - rise, 0.0) * clamp(rises / own, 0.0, 1.0);
+        slope5 += min(own5 - rise, 0.0) * clamp(g5 / own5, 0.0, 1.0);
 $end
-        few = clamp(1.0 - few / slopes, 0.0, 1.0);
-        open -= weight * (dot(few, vec4(0.5, 0.25, 0.125, 0.0625)) + 0.03125 * clamp(1.0 - g5 / last, 0.0, 1.0));
+        vec4 closed = clamp(1.0 - rises / slopes, 0.0, 1.0);
+        float closed5 = clamp(1.0 - g5 / slope5, 0.0, 1.0);
+$if FILMS
+        if (on_film) {
+            vec4 ways = reach * vec4(1.0, 2.0, 3.0, 4.0);
+            float way5 = 5.0 * reach;
+            float off = dot(p - film, towards), turn = dot(n, towards);
+            closed *= clamp($FILM_APART * (1.0 - ways * rises / max(abs(off + turn * ways), 1e-30)), 0.0, 1.0);
+            closed5 *= clamp($FILM_APART * (1.0 - way5 * g5 / max(abs(off + turn * way5), 1e-30)), 0.0, 1.0);
+        }
+$end
+        open -= weight * (dot(closed, vec4(0.5, 0.25, 0.125, 0.0625)) + 0.03125 * closed5);
     }
 $else
 $if !TWICE

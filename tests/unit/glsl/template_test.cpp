@@ -17,11 +17,13 @@ using glsl::Values;
 namespace {
 
 const std::vector<std::string> flags{
-    "BOXED",  "UNIT_SLOPE",   "SHADED_APART",  "PASSES",       "COUNTED",    "HAS_SAFE_RADIUS",
-    "TWICE",  "SKIP_SHADING", "LOCAL_NORMALS", "PICK",         "CACHED",     "FAR_CELLS",
-    "AROUND", "ONE_LIGHT",    "BLENDED",       "PICTURE",      "FIELD_ONLY", "TIME",
-    "ES",     "LOCATIONS",    "MARKED",        "OWN",          "UNPAINTED",  "PAINTED",
-    "LIT",    "CLASSIC",      "SOFT",          "FOUR_OUTPUTS", "ESTIMATED",  "FILMS"};
+    "BOXED",     "UNIT_SLOPE",      "CLOSEST",    "SHADED_APART", "PASSES",
+    "COUNTED",   "HAS_SAFE_RADIUS", "TWICE",      "SKIP_SHADING", "LOCAL_NORMALS",
+    "PICK",      "CACHED",          "FAR_CELLS",  "AROUND",       "ONE_LIGHT",
+    "BLENDED",   "PICTURE",         "FIELD_ONLY", "TIME",         "ES",
+    "LOCATIONS", "MARKED",          "OWN",        "UNPAINTED",    "PAINTED",
+    "LIT",       "CLASSIC",         "SOFT",       "FOUR_OUTPUTS", "ESTIMATED",
+    "FILMS"};
 
 // What a flag decides beside its own `$if`, as the emitter has it.
 Values values_with(std::string_view name, const std::set<std::string> &on) {
@@ -101,6 +103,9 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "FILM_NEAR",
                                "FILM_LOOK",
                                "FILM_TURN",
+                               "FILM_FLAT",
+                               "FILM_BEYOND",
+                               "FILM_APART",
                                "BEHIND",
                                "LIFT",
                                "SHARE",
