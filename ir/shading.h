@@ -197,8 +197,8 @@
 namespace fathom::ir::shading {
 
 inline constexpr float float_slack = 1e-6f;
-inline constexpr float normal_slack = 50;
-inline constexpr float arm = 0.25f;   // tolerances
+inline constexpr float normal_slack = 16;
+inline constexpr float arm = 0.125f;  // tolerances
 inline constexpr float lift = 2;      // arms
 inline constexpr float widest = 0.2f; // pixels
 inline constexpr float min_slope = 1.0f / 1024;
