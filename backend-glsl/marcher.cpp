@@ -70,6 +70,7 @@ Values values_of(const MarcherOptions &options) {
         {"JUMP", float_literal(shading::jump)},
         {"REFINED", float_literal(shading::refined)},
         {"SHADOW_ARM", float_literal(shading::shadow_arm)},
+        {"CREASE", float_literal(shading::crease)},
         {"CALM", float_literal(shading::calm)},
         {"NEARING", fmt::to_string(shading::nearing)},
         {"SHARE", float_literal(1 / std::max(options.estimate, 1.0))},

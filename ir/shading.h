@@ -27,7 +27,10 @@
 //
 // TRUE DISTANCE (semantics.md, 10), which knows of no bound
 //   near(p, h) = g(p) where the slope of g is 1 almost everywhere (`Frame::unit_slope`),
-//   else g(p) / max(|gradient(p, h)|, min_slope).
+//   else g(p) / max(slope, min_slope), slope^2 = |gradient(p, h)|^2 + crease*((m - g(p))/h)^2, where m is
+//   the mean of g at the gradient's taps. Across a crease of two parts the taps' gradient is the mean
+//   of both, and too small; what it lacks lies across, and lifts m: exactly so where both are as steep,
+//   p is on the crease, and it is along an axis.
 //
 // MARCH from `begin` to `end`: enhanced sphere tracing (Balint and Valasek 2018; the fallback is
 // that of Keinert et al. 2014). A ray ends in a hit (a change of sign), in a miss (all of its way is
@@ -211,6 +214,7 @@ inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.075f; // of half the height that is seen at the focus
 inline constexpr float nearly = 0.98f;
 inline constexpr int penumbra_turns = 7;
+inline constexpr float crease = 3;
 inline constexpr float calm = 0.125f;
 inline constexpr float dark = 1.0f / 64;     // of what the light covers at s
 inline constexpr float darkest = 1.0f / 256; // of what is closed, but by what the way crosses

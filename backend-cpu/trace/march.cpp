@@ -100,8 +100,13 @@ void near(Worker &worker, const Vec *points, const float *g, const float *h, flo
     }
     std::vector<Vec> slopes(n);
     gradients(worker, points, h, slopes.data(), n);
-    for (std::size_t k = 0; k < n; ++k)
-        out[k] = g[k] / std::max(length(slopes[k]), shading::min_slope);
+    const std::vector<float> &tap = worker.tap_values;
+    for (std::size_t k = 0; k < n; ++k) {
+        const float mean = 0.25f * (tap[k] + tap[n + k] + tap[2 * n + k] + tap[3 * n + k]);
+        const float bent = (mean - g[k]) / h[k];
+        const float slope = std::sqrt(dot(slopes[k], slopes[k]) + shading::crease * bent * bent);
+        out[k] = g[k] / std::max(slope, shading::min_slope);
+    }
 }
 
 void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,

@@ -114,7 +114,7 @@ $end
     bool left = true;
     vec3 sum = vec3(0.0);
 $if !UNIT_SLOPE
-    float arm = h;
+    float arm = h, bent = 0.0; // how far the taps are above the value, all together
 $end
     while (true) {
         float f = 0.0;
@@ -262,14 +262,18 @@ $if UNIT_SLOPE
 $else
         if (tap == 0) {
             sum = vec3(0.0);
+            bent = -4.0 * value;
             arm = max(h, $SHADOW_ARM * value);
         }
-        if (tap > 0) sum += f * fathom_corner(tap - 1);
+        if (tap > 0) {
+            sum += f * fathom_corner(tap - 1);
+            bent += f;
+        }
         if (tap < 4) {
             ++tap;
             continue;
         }
-        near = value / max(length(0.75 / arm * sum), $MIN_SLOPE);
+        near = value / max(sqrt(0.5625 * dot(sum, sum) + $CREASE * 0.0625 * bent * bent) / arm, $MIN_SLOPE);
 $end
 $if FILMS
         }

@@ -292,6 +292,21 @@ TEST_CASE("two texts of one solid give one picture") {
     }
 }
 
+TEST_CASE("what two parts leave of each other has a soft shadow without stripes") {
+    const auto sliver = [](const std::string &thin, const std::string &thick) {
+        return "camera(at: [3, 2.6, 5], look_at: [0, 0, 0], fov: 40deg)\n"
+               "lighting(soft_shadows: 0.15)\nsun(direction: [0.6, 0.8, 0.3])\nplane(Y, -1.2)\n" +
+               thick + ".translate([-0.553, 0.278, 0.157]) & " + thin +
+               ".rotate(1.557, axis: [0.714, -0.813, 1]).translate([0.238, 0.008, 0.435])\n";
+    };
+    const auto ring = [](const char *radius, const char *tube) {
+        return std::string("implicit(p => length([length(p.xz) - ") + radius + ", p.y]) - " + tube +
+               ")";
+    };
+    CHECK(different(drawn(sliver("torus(0.903, 0.147)", "torus(0.568, 0.299)")),
+                    drawn(sliver(ring("0.903", "0.147"), ring("0.568", "0.299")))) <= 11 * few);
+}
+
 TEST_CASE("a sky without bands: bytes of a gradient average to its values") {
     const cpu::Picture picture = drawn("sphere(0.01)\nbackground(d => vec3(0.3 + 0.02 * d.x))\n");
     // Over a block of the pattern the mean of the bytes moves by less than a level from the next one.

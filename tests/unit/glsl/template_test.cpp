@@ -94,6 +94,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "GRAZE",
                                "REFINED",
                                "CALM",
+                               "CREASE",
                                "DARK",
                                "DARKEST",
                                "DARK_LIGHT",
