@@ -79,7 +79,9 @@ float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, floa
     int probes = 0;   // steps of the touch
 $if FILMS
     bool careful = false; // a film is on the way: each mark is tried for one
-    bool done = false;
+    bool done = false; // the least is known: what is nearest there is tried for a film
+$else
+    const bool done = false;
 $end
     int turn = $ZERO;
 $if PASSES
@@ -222,11 +224,7 @@ $end
                 continue;
             }
         }
-        float near = 1e30;
-$if FILMS
-        if (!done) {
-$end
-        if (tap < 0) { // golden sections
+        if (tap < 0 && !done) { // golden sections
             if (left) at_a = f;
             if (!left) at_b = f;
             ++search;
@@ -258,7 +256,7 @@ $end
         }
         if (tap == 0) value = f;
 $if UNIT_SLOPE
-        near = value;
+        float near = value;
 $else
         if (tap == 0) {
             sum = vec3(0.0);
@@ -269,14 +267,13 @@ $else
             sum += f * fathom_corner(tap - 1);
             bent += f;
         }
-        if (tap < 4) {
+        if (tap < 4 && !done) {
             ++tap;
             continue;
         }
-        near = value / max(sqrt(0.5625 * dot(sum, sum) + $CREASE * 0.0625 * bent * bent) / arm, $MIN_SLOPE);
+        float near = value / max(sqrt(0.5625 * dot(sum, sum) + $CREASE * 0.0625 * bent * bent) / arm, $MIN_SLOPE);
 $end
 $if FILMS
-        }
         float closed = near / (angle * x);
         bool lowers = closed < shadow;
         if (search >= 0 && !careful) {
