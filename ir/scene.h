@@ -227,7 +227,7 @@ struct Scene {
         shaded; // (vec3) -> float: the same surface and signs; no bound above 1 divides it, so
                 // it is no safe step. `distance` itself where no bound is above 1
     bool unit_slope = false; // the slope of `shaded` is 1 almost everywhere
-    bool films = false; // the field may be 0 where it is above 0 on both sides (shading.h, TOUCHES)
+    bool films = false; // the field may be 0, or nearly, where there is no solid (shading.h, FILMS)
     FunctionId hit;     // (vec3) -> Hit: the same distance, with the surface that decides
     FunctionId endless, endless_hit; // the same of the parts without an end alone, where the scene
                                      // has others beside them

@@ -134,12 +134,11 @@
 //   what rises as the surface itself does is open, and what closes begins to without an edge, however
 //   steep its field is.
 //   closed_i = clamp(1 - g_i/(slope_i*x_i), 0, 1)
-//   In a scene that may have films (TOUCHES, `Frame::films`), where what is nearest to the sample k is
-//   one, it closes nothing. With v = gradient(p + x_k*n, h) and u = v/|v|: m = p + x_k*n - g_k*u/|v|, and
-//   where |g(m)| < film_flat*g_k, m is moved by -g(m)*u/|v|; a film is where then
-//   g(m - film_beyond*tolerance(t)*u) >= 0. Its distance by its slope from the sample i is
-//   b_i = |(p + x_i*n - m).v|, and closed_i is multiplied by clamp(film_apart*(1 - g_i/b_i), 0, 1): what
-//   is nearer than the film still closes.
+//   In a scene that may have films (`Frame::films`), where what is nearest to the sample k is one, it
+//   closes nothing. With v = gradient(p + x_k*n, h), m = p + x_k*n - g_k*v/(slope*|v|) is tried (FILMS),
+//   with a circle whose plane holds v. Of a film the distance by its slope from the sample i is b_i =
+//   |(p + x_i*n - m).v|, and closed_i is multiplied by clamp(film_apart*(1 - g_i/b_i), 0, 1): what is
+//   nearer than the film still closes.
 //   occlusion = sum of 2^-i * closed_i, divided by the sum of the 2^-i
 //
 // SHADOW (thesis, 4.2.1: from the light towards the point, so that no ray has to leave a surface
@@ -170,13 +169,18 @@
 //   the slope there, and counts where it is below that of the mark. So a penumbra depends on the solid
 //   alone: another bound makes other steps, but the same marks, and those that it passes over are not
 //   near enough.
-//   FILMS: what covers a part of the light may be a film (TOUCHES), which shades nothing. In a scene
-//     that may have some (`Frame::films`), where 0 < shadow < closed_from at the end: from p at `at`,
-//     at most film_steps times, by g/|gradient(p, shadow_arm*g)| along -gradient, until |g| <
-//     film_near*slack(s)/4. Then g is looked at film_looks times on a circle of radius
-//     film_look*slack(s)/4 about that place, across the way. If it is below -slack(s)/4 at none of
-//     them, that is a film (or an edge sharper than film_turn). Then the way is gone anew, and where
-//     closed is less, at a mark and at the least between marks, this is tried: a film does not count.
+//   FILMS: what covers a part of the light may be no solid: a film, where the field is 0 (TOUCHES), or
+//     a place where it is least and above 0, as between the face of a plate and the end of the tool that
+//     cuts it, if that ends a little beyond: there the field is a bound of the distance, and far below
+//     it. In a scene that may have some (`Frame::films`), where 0 < shadow < closed_from at the end:
+//     from p at `at`, at most film_steps times, while g >= near = film_near*slack(s)/4: with v =
+//     gradient(p, a), a = shadow_arm*g, and the slope of TRUE DISTANCE, to p - g*v/(slope*|v|); where
+//     g does not become film_halved of what it was, to the lowest of that and the four taps; where that
+//     is not below film_lower of what it was, g is least there: a film. Where |g| < near, g is looked
+//     at film_looks times on a circle of radius film_look*slack(s)/4 about that place, across the way.
+//     If it is below -slack(s)/4 at none of them, that is a film (or an edge sharper than an angle
+//     between two looks). Then the way is gone anew, and where closed is less, at a mark and at the
+//     least between marks, this is tried: a film does not count.
 //   shadow = min(shadow, 1), at least darkest; result: shadow^2*(3 - 2*shadow), less what it is at
 //   darkest and divided by 1 less that, so that what is nearly dark is dark, without a step
 //
@@ -226,13 +230,12 @@ inline constexpr int refinements = 12;
 inline constexpr float refined = 1.0f / 2048; // of a tolerance
 inline constexpr float across = 1.0f / 32; // the slope behind a touch, from which on it is no graze
 inline constexpr float probe = 8;          // slack/4: the first step beyond what is touched
-inline constexpr int film_steps = 4;       // to what may be a film
-inline constexpr float film_flat = 0.01f;  // of a sample's value
-inline constexpr float film_beyond = 4;    // tolerances
-inline constexpr float film_apart = 4;     // what is a quarter nearer than the film closes in full
+inline constexpr int film_steps = 8;       // to what may be a film
+inline constexpr float film_halved = 0.5f, film_lower = 0.97f; // of the value before
+inline constexpr float film_apart = 4; // what is a quarter nearer than the film closes in full
 inline constexpr float film_near = 8, film_look = 64; // slack/4
 inline constexpr int film_looks = 24;                 // on a circle,
-inline constexpr float film_turn = 0.261799388f;      // so far apart
+inline constexpr float film_turn = 2.87979327f;       // so far apart: eleven of them
 inline constexpr int deep = 2;         // touches not above 0 that are a solid, one less
 inline constexpr int nearing = 3;      // samples, by which an estimate is hit
 inline constexpr int many_steps = 256; // red in a picture of steps

@@ -76,11 +76,15 @@ void shaded_values(Worker &worker, const Columns &points, float *out, std::size_
         evaluate(worker.stage.shaded, worker.shaded, points.pointers(), &out, n);
 }
 
+Vec corner(std::size_t i) {
+    const auto sign = [](std::size_t bit) { return 2.0f * static_cast<float>(bit & 1) - 1.0f; };
+    return 0.577350269f * Vec{sign((i + 3) >> 1), sign(i >> 1), sign(i)};
+}
+
 void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std::size_t n) {
     std::array<Vec, 4> corners;
     for (std::size_t i = 0; i < 4; ++i) {
-        const auto sign = [](std::size_t bit) { return 2.0f * static_cast<float>(bit & 1) - 1.0f; };
-        corners[i] = 0.577350269f * Vec{sign((i + 3) >> 1), sign(i >> 1), sign(i)};
+        corners[i] = corner(i);
         for (std::size_t k = 0; k < n; ++k)
             worker.taps.set(0, i * n + k, points[k] + h[k] * corners[i]);
     }

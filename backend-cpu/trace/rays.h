@@ -104,11 +104,22 @@ bool is_bound(const Worker &worker, std::size_t k); // of the last distances'
 void hits(Worker &worker, std::size_t n);           // at worker.points, into worker.hits
 // Scene::shaded at the first n points.
 void shaded_values(Worker &worker, const Columns &points, float *out, std::size_t n);
-// Its gradients at n points, with arms h.
+// Its gradients at n points, with arms h; the taps at all first corners, then at all second ones …,
+// stay in worker.tap_values.
+Vec corner(std::size_t i);
 void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std::size_t n);
 // The true distances near n points where it says g (shading.h, TRUE DISTANCE).
 void near(Worker &worker, const Vec *points, const float *g, const float *h, float *out,
           std::size_t n);
+
+// Which of these values tell of no solid (shading.h, FILMS).
+struct Approach {
+    Vec at;
+    float g;     // Scene::shaded there
+    float thick; // what is touched is below it
+    Vec across;  // the normal of the circle that is looked at, of length 1
+};
+std::vector<char> find_films(Worker &worker, const std::vector<Approach> &ways);
 
 // A hit's place: between the last two samples of its walk (shading.h, REFINED).
 struct Crossing {

@@ -151,46 +151,34 @@ Surroundings look_around(Worker &worker, const Points &at) {
 }
 
 // Whether what is nearest to the sample that is closed most is a film (shading.h, OCCLUSION).
-void find_films(Worker &worker, const Points &at, Surroundings &around) {
+void find_films_of(Worker &worker, const Points &at, Surroundings &around) {
     const Lengths lengths(worker.stage);
     around.film.resize(at.size()), around.on_film.assign(at.size(), 0);
-    std::vector<std::size_t> maybe;
+    std::vector<std::size_t> tried;
+    std::vector<Approach> ways;
     for (std::size_t k = 0; k < at.size(); ++k) {
         const std::size_t i = around.closest[k];
-        const Vec u = around.gradient[k];
-        if (!(dot(u, u) > 0)) continue;
-        around.film[k] = around.place(at, k, i) - around.g[i][k] / dot(u, u) * u;
-        maybe.push_back(k);
+        const Vec v = around.gradient[k];
+        const Vec across = std::fabs(v.x) < std::fabs(v.y) ? Vec(0, v.z, -v.y) : Vec(-v.z, 0, v.x);
+        if (!(dot(across, across) > 0)) continue;
+        const float down = around.g[i][k] / (around.slope[k] * length(v));
+        around.film[k] = around.place(at, k, i) - down * v;
+        tried.push_back(k);
+        ways.push_back(
+            {around.film[k], 0, 0.25f * lengths.slack_at(at.t[k]), glm::normalize(across)});
     }
-    std::vector<float> values(maybe.size());
-    const auto evaluate_at = [&](float beyond) {
-        for (std::size_t j = 0; j < maybe.size(); ++j) {
-            const std::size_t k = maybe[j];
-            const float step = beyond * lengths.tolerance(at.t[k]);
-            const Vec u = around.gradient[k];
-            worker.points.set(0, j, around.film[k] - step / length(u) * u);
-        }
-        shaded_values(worker, worker.points, values.data(), maybe.size());
-    };
-    evaluate_at(0);
-    std::vector<std::size_t> flat;
-    for (std::size_t j = 0; j < maybe.size(); ++j) {
-        const std::size_t k = maybe[j];
-        const Vec u = around.gradient[k];
-        if (!(std::fabs(values[j]) < shading::film_flat * around.g[around.closest[k]][k])) continue;
-        around.film[k] = around.film[k] - values[j] / dot(u, u) * u;
-        flat.push_back(k);
-    }
-    maybe = std::move(flat);
-    evaluate_at(shading::film_beyond);
-    for (std::size_t j = 0; j < maybe.size(); ++j) around.on_film[maybe[j]] = values[j] >= 0;
+    for (std::size_t j = 0; j < ways.size(); ++j) worker.points.set(0, j, ways[j].at);
+    shaded_values(worker, worker.points, worker.values.data(), ways.size());
+    for (std::size_t j = 0; j < ways.size(); ++j) ways[j].g = worker.values[j];
+    const std::vector<char> found = find_films(worker, ways);
+    for (std::size_t j = 0; j < tried.size(); ++j) around.on_film[tried[j]] = found[j];
 }
 
 // How much of the surroundings five samples along the normal find closed (thesis, 4.2.1).
 std::vector<float> find_occlusion(Worker &worker, const Points &at) {
     const ir::Frame &frame = worker.stage.frame;
     Surroundings around = look_around(worker, at);
-    if (frame.films) find_films(worker, at, around);
+    if (frame.films) find_films_of(worker, at, around);
     std::vector<float> sum(at.size(), 0.0f);
     std::vector<float> own = at.slope; // what the surface itself rises by: what rises so is open
     float weight = 1, total = 0;

@@ -201,49 +201,16 @@ class Shadows {
     // Of these of what is close: whether it is a film (shading.h, FILMS).
     template <class Which> void find_films(Which which) {
         on_film_.assign(close_.size(), 0);
+        std::vector<std::size_t> tried;
         std::vector<Approach> ways;
-        for (std::size_t j = 0; j < close_.size(); ++j)
-            if (which(j))
-                ways.push_back({j, 0.25f * lengths_.slack_at(close_[j].s), points_[j], values_[j]});
-        std::vector<Approach> touching;
-        std::vector<Vec> at, slopes;
-        std::vector<float> arms, values;
-        for (int step = 0;; ++step) {
-            for (const Approach &way : ways)
-                if (std::fabs(way.g) < shading::film_near * way.film) touching.push_back(way);
-            std::erase_if(ways, [](const Approach &way) {
-                return !(way.g >= shading::film_near * way.film);
-            });
-            if (step == shading::film_steps || ways.empty()) break;
-            at.clear(), arms.clear(), slopes.resize(ways.size());
-            for (const Approach &way : ways) {
-                at.push_back(way.at);
-                arms.push_back(shading::shadow_arm * way.g);
-            }
-            gradients(worker_, at.data(), arms.data(), slopes.data(), ways.size());
-            for (std::size_t k = 0; k < ways.size(); ++k) {
-                const float slope = std::max(length(slopes[k]), shading::min_slope);
-                at[k] = ways[k].at -= ways[k].g / (slope * slope) * slopes[k];
-            }
-            evaluate_at(at, values);
-            for (std::size_t k = 0; k < ways.size(); ++k) ways[k].g = values[k];
+        for (std::size_t j = 0; j < close_.size(); ++j) {
+            if (!which(j)) continue;
+            tried.push_back(j);
+            ways.push_back({points_[j], values_[j], 0.25f * lengths_.slack_at(close_[j].s),
+                            rays_[close_[j].ray].towards});
         }
-        for (int turn = 0; turn < shading::film_looks && !touching.empty(); ++turn) {
-            const float angle = shading::film_turn * static_cast<float>(turn);
-            at.clear();
-            for (const Approach &way : touching) {
-                const Vec l = rays_[close_[way.close].ray].towards;
-                const Vec side = glm::normalize(
-                    std::fabs(l.x) < 0.6f ? Vec(0, l.z, -l.y) : Vec(-l.z, 0, l.x)); // across l
-                at.push_back(way.at +
-                             shading::film_look * way.film *
-                                 (std::cos(angle) * side + std::sin(angle) * glm::cross(l, side)));
-            }
-            evaluate_at(at, values);
-            for (std::size_t k = 0; k < touching.size(); ++k) touching[k].g = values[k];
-            std::erase_if(touching, [](const Approach &way) { return !(way.g >= -way.film); });
-        }
-        for (const Approach &way : touching) on_film_[way.close] = 1;
+        const std::vector<char> found = cpu::find_films(worker_, ways);
+        for (std::size_t i = 0; i < tried.size(); ++i) on_film_[tried[i]] = found[i];
     }
 
     void evaluate_at(const std::vector<Vec> &points, std::vector<float> &out) {
@@ -314,12 +281,6 @@ class Shadows {
     struct Close {
         std::size_t ray;
         float s, d;
-    };
-    struct Approach { // to what is close
-        std::size_t close;
-        float film;
-        Vec at;
-        float g;
     };
 
     Worker &worker_;

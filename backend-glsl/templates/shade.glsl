@@ -33,11 +33,10 @@ $if TWICE
 $else
     int done = 0;
 $end
-$# The gradient's four points; along the normal that they give, the occlusion's five; where these are
-$# closed most, the gradient again; and on what is nearest there, and beyond it, whether it is a film.
+$# The gradient's four points; along the normal that they give, the occlusion's five; and where these
+$# are closed most, the gradient again.
 $if !SKIP_SHADING
-    vec3 sum = vec3(0.0), towards = vec3(0.0), film = vec3(0.0);
-    bool on_film = false;
+    vec3 sum = vec3(0.0), towards = vec3(0.0);
     float least = 1e30, x = 0.0;
     float g1 = 0.0, g2 = 0.0, g3 = 0.0, g4 = 0.0, g5 = 0.0; // over their distances from p
     for (int i = $ZERO + done; i < taps$AND_PRESENT; ++i) {
@@ -46,10 +45,6 @@ $if !SKIP_SHADING
         vec3 place = mix(p + away * n, above, float(i < 4));
         vec3 e = fathom_corner(i - 9 * int(i > 3));
         if (!outward) place += h * e;
-$if FILMS
-        if (i == 13) place = film;
-        if (i == 14) place = film - $FILM_BEYOND * fathom_tolerance(t) * normalize(towards);
-$end
         float f = $SHADED(place);
         if (outward) {
             f /= away;
@@ -69,27 +64,9 @@ $end
 $end
             continue;
         }
-$if FILMS
-        if (i == 13) {
-            if (!(abs(f) < $FILM_FLAT * least * x)) break;
-            film -= f / dot(towards, towards) * towards;
-            continue;
-        }
-        if (i == 14) {
-            on_film = f >= 0.0;
-            break;
-        }
-$end
         sum += f * e;
 $if CLOSEST
-        if (i == 12) {
-            towards = 0.75 / h * sum;
-$if FILMS
-            float square = dot(towards, towards);
-            if (!(square > 0.0)) break;
-            film = p + x * n - least * x / square * towards;
-$end
-        }
+        if (i == 12) towards = 0.75 / h * sum;
 $end
 $if !TWICE
         if (i == 3) {
@@ -122,6 +99,13 @@ $end
         vec4 closed = clamp(1.0 - rises / slopes, 0.0, 1.0);
         float closed5 = clamp(1.0 - g5 / slope5, 0.0, 1.0);
 $if FILMS
+        vec3 across = abs(towards.x) < abs(towards.y) ? vec3(0.0, towards.z, -towards.y) : vec3(-towards.z, 0.0, towards.x);
+        bool on_film = dot(across, across) > 0.0;
+        vec3 film = p + x * n;
+        if (on_film) {
+            film -= least * x / (rise * length(towards)) * towards;
+            on_film = fathom_film(film, normalize(across), 0.25 * fathom_slack_at(t));
+        }
         if (on_film) {
             vec4 ways = reach * vec4(1.0, 2.0, 3.0, 4.0);
             float way5 = 5.0 * reach;

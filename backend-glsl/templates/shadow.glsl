@@ -13,11 +13,11 @@ float fathom_mark(float s, float d, float edge, float quiet, float angle) {
 }
 
 $if FILMS
-// Whether what is nearest to p is a film, which has no inside (FILMS). It is touched below `thick`; the ray goes along l.
+// Whether what the field says at p tells of no solid (FILMS). What is touched is below `thick`; the circle lies across l.
 bool fathom_film(vec3 p, vec3 l, float thick) {
     vec3 side = normalize(abs(l.x) < 0.6 ? vec3(0.0, l.z, -l.y) : vec3(-l.z, 0.0, l.x));
-    vec3 sum = vec3(0.0), around = vec3(0.0);
-    float g = 0.0, arm = 0.0;
+    vec3 sum = vec3(0.0), around = vec3(0.0), lowest = p;
+    float g = 0.0, arm = 0.0, low = 0.0, bent = 0.0;
     int step = 0, tap = -1, look = -1; // of a gradient, -1: the field itself; of the circle, -1: not there yet
     for (int i = $ZERO; i < 5 * $FILM_STEPS + 1 + $FILM_LOOKS; ++i) {
 $if AROUND
@@ -37,17 +37,31 @@ $end
         }
         if (look < 0 && tap >= 0) {
             sum += f * fathom_corner(tap);
+            bent += f;
+            if (tap == 0 || f < low) {
+                low = f;
+                lowest = p + around;
+            }
             ++tap;
             around = arm * fathom_corner(tap & 3);
             if (tap == 4) {
                 sum *= 0.75 / arm;
-                p -= g / max(dot(sum, sum), $MIN_SLOPE * $MIN_SLOPE) * sum;
+                bent *= 0.25 / arm;
+                float slope = max(sqrt(dot(sum, sum) + $CREASE * bent * bent), $MIN_SLOPE);
+                p -= g / (slope * max(length(sum), $MIN_SLOPE)) * sum;
                 around = vec3(0.0);
                 tap = -1;
                 continue;
             }
         }
         if (look < 0 && tap < 0) {
+            if (step > 0) {
+                if (!(f < $FILM_HALVED * g) && low < f) {
+                    f = low;
+                    p = lowest;
+                }
+                if (!(f < $FILM_LOWER * g)) return true; // a least value above 0
+            }
             g = f;
             if (!(g > -$FILM_NEAR * thick)) return false;
             if (g < $FILM_NEAR * thick) look = 0;
@@ -57,6 +71,7 @@ $end
                 tap = 0;
                 arm = $SHADOW_ARM * g;
                 sum = vec3(0.0);
+                bent = -4.0 * g;
                 around = arm * fathom_corner(0);
             }
         }
