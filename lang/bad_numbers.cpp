@@ -14,6 +14,10 @@ namespace {
 constexpr std::array<std::string_view, 17> lengths = {"mm", "cm",  "dm",   "m",  "km",    "um",
                                                       "nm", "in",  "inch", "ft", "px",    "pt",
                                                       "em", "rem", "vh",   "vw", "inches"};
+// Of types, in Rust, C, Java and GLSL.
+constexpr std::array<std::string_view, 19> suffixes = {
+    "f32", "f64", "i8",    "i16",   "i32", "i64", "u8", "u16", "u32", "u64",
+    "lf",  "LF",  "usize", "isize", "L",   "UL",  "ul", "LL",  "ull"};
 constexpr std::array<std::string_view, 5> seconds = {"s", "sec", "secs", "second", "seconds"};
 
 template <std::size_t N>
@@ -62,6 +66,10 @@ BadNumber explain_bad_number(std::string_view word, bool named) {
                 "leave the point away, or write a digit after it",
                 number.find('.') == std::string::npos ? number + ".0" : number};
     if (rest == "f" || rest == "F" || rest == ".f" || rest == "u" || rest == "U")
+        return {"a number has no suffix " + code, "leave it away", number};
+    std::string_view suffix = rest;
+    while (suffix.starts_with('_')) suffix.remove_prefix(1);
+    if (!named && holds(suffixes, suffix))
         return {"a number has no suffix " + code, "leave it away", number};
     if ((rest[0] == 'x' || rest[0] == 'X') && number == "0" && rest.size() > 1 &&
         std::all_of(rest.begin() + 1, rest.end(), is_hex) && rest.size() < 9) {

@@ -23,6 +23,10 @@ bool is_type_word(std::string_view word); // of any language
 bool is_foreign_value(std::string_view name);
 bool is_foreign_module(std::string_view name);
 
+// A string with values in it, as `f"r = {r}"` and `${r}` of JavaScript, as a sum; empty where it
+// holds none, or what is not plain. `opening` is what stands before a value.
+std::string joined_string(std::string_view quoted, std::string_view opening);
+
 // A text as it can stand in a message: of one line and not long, else `…`; and in backticks.
 std::string brief(std::string_view text);
 std::string in_code(std::string_view text);
@@ -296,6 +300,14 @@ class Builder {
     bool lisp_binding(Index open);
     bool lisp_call(Index at);
     bool joined_by_space(Index at, bool list);
+    bool call_of_row(Index open);
+    bool pipe_edits(Index sign, std::vector<Edit> &edits) const;
+    std::string nested_loops(Index open, Index at) const;
+    std::string scad_heads(Index name, Index close) const;
+    bool nothing_compared(Index at);
+    bool applied_without_dot(Index at);
+    void enumeration(Index first);
+    std::vector<Edit> further_names(Index first, Index from);
 
     // Operators of theirs, and what is missing beside one (foreign_operators.cpp).
     bool touch(Index first, Index second) const; // with nothing between

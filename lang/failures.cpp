@@ -129,6 +129,8 @@ void Builder::generic_failure(Wanted wanted, Index at) {
         return;
     }
     if (exists && wanted == Wanted::CloseList && found == Tok::Comma && range_of_param(at)) return;
+    if (exists && wanted == Wanted::CloseList && found == Tok::Comma && call_of_row(enclosing(at)))
+        return;
     if (exists && wanted == Wanted::CloseList && found == Tok::Comma) { // no list: an index
         diagnostics_.add(Code::SyntaxError, span(at), "an index is one number")
             .label(span(enclosing(at)), "of this index")

@@ -115,6 +115,32 @@ Builder::Index Builder::body_below(Index at) const {
     return end;
 }
 
+// OpenSCAD's `x = [0, 1], y = [0:3]` up to `close`, as the heads of loops, one in another; empty
+// where it is none.
+std::string Builder::scad_heads(Index name, Index close) const {
+    std::string head;
+    while (name < close) {
+        const Index open = name + 2, end = match(open);
+        if (kind(name) != Tok::Name || kind(name + 1) != Tok::Assign ||
+            kind(open) != Tok::ListOpen || end <= open)
+            return {};
+        std::vector<std::string> parts;
+        for (Index first = open + 1, i = first; i <= end; i = match(i) > i ? match(i) + 1 : i + 1) {
+            if (i < end && kind(i) != Tok::Colon) continue;
+            parts.emplace_back(first < i ? text(token(first).begin, token(i - 1).end) : "");
+            first = i + 1;
+        }
+        const std::string list(text(token(open).begin, token(end).end));
+        head += (head.empty() ? "" : " { for ") + std::string(text(name)) + " in " +
+                (parts.size() == 1   ? list
+                 : parts.size() == 2 ? parts[0] + "..=" + parts[1]
+                                     : range_up_to(parts[0], parts[2], parts[1]));
+        if (end + 1 < close && kind(end + 1) != Tok::Comma) return {};
+        name = end + 2;
+    }
+    return head;
+}
+
 // `for (…)` with what stands in the parentheses: `i in list`, `i = [0:8]`, `int i = 0; i < 8; i++`.
 bool Builder::foreign_loop(Index at) {
     if (at == 0 || kind(at - 1) != Tok::For ||
@@ -122,30 +148,42 @@ bool Builder::foreign_loop(Index at) {
         return false;
     const Index close = match(at);
     const auto inside = [&](Index first, Index last) { // [first, last)
-        return first < last ? std::string(text(token(first).begin, token(last - 1).end))
-                            : std::string();
+        std::string out;
+        for (Index i = first; i < last; ++i) {
+            if (i > first) out += text(token(i - 1).end, token(i).begin);
+            out += text(i) == "..<" ? ".." : text(i); // put right with the rest
+        }
+        return out;
     };
     const auto find = [&](Index from, Index to, Tok wanted) {
         while (from < to && kind(from) != wanted)
             from = match(from) > from ? match(from) + 1 : from + 1;
         return std::min(from, to);
     };
+    for (Index i = at; i < close; ++i)
+        if (text(i) == "..<") diagnostics_.withdraw(Code::ForeignSyntax, span(i));
     Diagnostic &d = foreign(span(at - 1, close), "a loop is written `for i in 0..8 { … }`");
     const auto propose = [&](const std::string &head) {
         std::vector<Edit> edits{{span(at, close), head}};
+        const auto inner = std::ranges::count(head, '{'); // loops within the first
+        std::string closed = " }";
+        for (auto n = inner; n > 0; --n) closed += " }";
         Index end = close + 1; // of a body without braces
         const bool below = body_below(close + 1) > close + 1;
         if (below) {
             end = body_below(close + 1);
             edits[0].replacement += " {";
-            edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, " }"});
+            edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, closed});
             failed_ = end - 1;
         }
         while (!ends_statement(end) && kind(end) != Tok::ListClose && kind(end) != Tok::Close)
             end = match(end) > end ? match(end) + 1 : end + 1;
         if (!below && kind(close + 1) != Tok::Body && end > close + 1) {
             edits.push_back({{id_, token(close + 1).begin, token(close + 1).begin}, "{ "});
-            edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, " }"});
+            edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, closed});
+        } else if (!below && inner > 0) {
+            const Index last = match(close + 1);
+            edits.push_back({{id_, token(last).end, token(last).end}, closed.substr(2)});
         }
         d.help("write `for " + head + " { … }`", std::move(edits));
         return true;
@@ -157,6 +195,10 @@ bool Builder::foreign_loop(Index at) {
     if (kind(i) == Tok::Name && kind(i + 1) == Tok::Name && text(i + 1) == "of")
         return propose(std::string(text(i)) + " in " + inside(i + 2, close));
     if (kind(i) == Tok::Name && kind(i + 1) == Tok::In) return propose(inside(i, close));
+    Index colon = i; // `const auto &r : radii`
+    while (colon < close && !is_one_of(kind(colon), {Tok::Colon, Tok::Assign, Tok::End})) ++colon;
+    if (kind(colon) == Tok::Colon && kind(colon - 1) == Tok::Name && colon + 1 < close)
+        return propose(std::string(text(colon - 1)) + " in " + inside(colon + 1, close));
     while (i < close && kind(i + 1) != Tok::Assign) ++i;
     if (i >= close || kind(i) != Tok::Name) return true;
     const std::string name(text(i));
@@ -165,8 +207,12 @@ bool Builder::foreign_loop(Index at) {
         if (kind(value) != Tok::ListOpen) return propose(name + " in " + inside(value, close));
         const Index end = match(value);
         if (end + 1 != close) {
-            d.help("write a loop for each variable, one in another");
-            return true;
+            const std::string head = scad_heads(i, close);
+            if (head.empty()) {
+                d.help("write a loop for each variable, one in another");
+                return true;
+            }
+            return propose(head);
         }
         const Index one = find(value + 1, end, Tok::Colon);
         if (one == end) return propose(name + " in " + inside(value, close));
@@ -324,7 +370,7 @@ bool Builder::foreign_junk(Index first, Index at) {
                 {{id_, token(last).end, token(last).end}, ")"}});
         return true;
     }
-    return juxtaposed_arguments(at) || junk_by_sign(first, at);
+    return applied_without_dot(at) || juxtaposed_arguments(at) || junk_by_sign(first, at);
 }
 
 // The same by the sign, or the keyword, that should not stand there.
@@ -409,8 +455,10 @@ bool Builder::junk_by_sign(Index first, Index at) {
         }
         if (kind(first) != Tok::Let && kind(first) != Tok::Var) return false;
         if (kind(at + 1) == Tok::Name) lost_.push_back(at + 1);
+        std::vector<Edit> edits{{span(at), "; " + std::string(text(first))}};
+        for (Edit &further : further_names(at + 1, at + 1)) edits.push_back(std::move(further));
         foreign(span(at), "each name is bound by a `let` of its own")
-            .help("write `; let`", {{span(at), "; " + std::string(text(first))}});
+            .help("write `; let`", std::move(edits));
         return true;
     }
     if (found == Tok::If) {

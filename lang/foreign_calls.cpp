@@ -23,11 +23,16 @@ constexpr std::pair<std::string_view, std::string_view> scad_names[] = {
     {"cube", "box"},
     {"square", "rectangle"}};
 
+// What a distance field has no need of, or has no parts for.
+constexpr std::array<std::string_view, 8> needless_arguments = {
+    "center", "convexity", "slices", "segments", "angle", "steps", "centre", "resolution"};
+
 } // namespace
 
 bool is_foreign_transform(std::string_view name) { return is_one_of(name, transforms); }
 
-// A transform of OpenSCAD as it is written here: angles in degrees, `:` behind names.
+// A transform of OpenSCAD as it is written here: angles in degrees, `:` behind names, of which
+// nothing more is said.
 std::string Builder::transform_text(Index name) const {
     const Index open = name + 1, close = match(open);
     std::string out(text(name));
@@ -38,7 +43,20 @@ std::string Builder::transform_text(Index name) const {
     std::uint32_t end = token(name).end;
     int depth = 0;
     bool angle = true; // in the first argument
+    for (Index i = open; i < close; ++i)
+        if (kind(i) == Tok::Assign) diagnostics_.withdraw(Code::ForeignSyntax, span(i));
     for (Index i = open; i <= close; ++i) {
+        if (depth == 1 && kind(i) == Tok::Name && kind(i + 1) == Tok::Assign &&
+            is_one_of(text(i), needless_arguments)) {
+            while (i < close && kind(i) != Tok::Comma) i = match(i) > i ? match(i) + 1 : i + 1;
+            if (kind(i) == Tok::Comma)
+                end = token(i + 1).begin;
+            else {
+                while (out.ends_with(' ') || out.ends_with(',')) out.pop_back();
+                out += ")";
+            }
+            continue;
+        }
         if (match(i) > i) ++depth;
         if (match(i) < i) --depth;
         if (kind(i) == Tok::Comma && depth == 1) angle = false;
@@ -47,6 +65,8 @@ std::string Builder::transform_text(Index name) const {
         const std::string_view word = text(i);
         const bool in_degrees = rotate && angle && kind(i) == Tok::Number && word != "0" &&
                                 word.find_first_not_of("0123456789.") == std::string_view::npos;
+        const bool twists = kind(i) == Tok::Number && kind(i - 1) == Tok::Assign &&
+                            text(i - 2) == "twist"; // in degrees
         const bool alone =
             kind(i) == Tok::Name &&
             is_one_of(kind(i - 1), {Tok::Open, Tok::FreshOpen, Tok::ListOpen, Tok::Comma}) &&
@@ -56,7 +76,7 @@ std::string Builder::transform_text(Index name) const {
         else if (color && kind(i) == Tok::String)
             out += word.substr(1, word.size() - 2);
         else
-            out += std::string(word) + (in_degrees                 ? "deg"
+            out += std::string(word) + (in_degrees || twists       ? "deg"
                                         : rotate && angle && alone ? " * 1deg"
                                                                    : "");
         end = token(i).end;
@@ -181,6 +201,16 @@ bool Builder::foreign_import(Index at) {
                   {{{id_, token(at - 1).begin, token(statement_end(at) - 1).end}, ""}});
         return true;
     }
+    constexpr std::array<std::string_view, 16> theirs = {
+        "bpy",   "bmesh", "mathutils", "random", "os",       "sys",       "time",    "scipy",
+        "cmath", "sdf",   "trimesh",   "solid",  "cadquery", "build123d", "libfive", "matplotlib"};
+    if (is_one_of(text(at), theirs) && !written.ends_with("sdf\"") && !written.ends_with(".sdf")) {
+        failed_ = end;
+        foreign(span(at), "a library of another language cannot be brought in")
+            .help("leave the line away",
+                  {{{id_, token(at - 1).begin, token(statement_end(at) - 1).end}, ""}});
+        return true;
+    }
     const std::string path = "\"" + written + (written.ends_with(".sdf") ? "\"" : ".sdf\"");
     foreign(span(at, end - 1), "a module is named by its file, in double quotes")
         .help("write `import " + path + "`", {{span(at, end - 1), path}});
@@ -236,7 +266,13 @@ std::string Builder::lisp_value(Index &at) const {
 // `name a b` up to `end`, as a call; `+ a b` as a sum.
 std::string Builder::lisp_part(Index at, Index end) const {
     const Tok head = kind(at);
-    const std::string name(text(at));
+    std::string name(text(at));
+    std::string axis, named;
+    if (head == Tok::Name && kind(at + 1) == Tok::Minus && touch(at, at + 1)) { // `rotate-y`
+        const std::string_view part = text(at += 2);
+        if (part != "x" && part != "y" && part != "z") return {};
+        axis = std::string("axis: ") + static_cast<char>(part[0] - 'x' + 'X');
+    }
     const bool moves = name == "move" || name == "translate";
     if (is_one_of(head, {Tok::Plus, Tok::Minus, Tok::Star, Tok::Slash})) {
         std::string sum;
@@ -252,8 +288,25 @@ std::string Builder::lisp_part(Index at, Index end) const {
         const std::string value = lisp_value(at);
         return at == end ? value : std::string();
     }
-    std::string arguments, axis;
+    std::string arguments;
     for (Index i = at + 1; i < end;) {
+        if (kind(i) == Tok::Colon && kind(i + 1) == Tok::Name && touch(i, i + 1)) { // `:r 10`
+            const std::string key(text(i + 1));
+            const std::string value = lisp_value(i += 2);
+            if (value.empty()) return {};
+            const bool rounds = key == "r" && (name == "union" || name == "intersect" ||
+                                               name == "subtract" || name == "difference");
+            if (rounds) { // they flow together
+                name = name == "union"       ? "smooth_union"
+                       : name == "intersect" ? "smooth_intersection"
+                                             : "smooth_difference";
+                arguments = bare(value) + (arguments.empty() ? "" : ", ") + arguments;
+                continue;
+            }
+            if (key == "r" && name == "box") name = "rounded_box";
+            named += ", " + (key == "r" ? std::string("radius") : key) + ": " + bare(value);
+            continue;
+        }
         const std::string_view word = text(i);
         const bool alone = i == at + 1 && i + 1 == end && kind(at - 1) != Tok::Bar; // `(sphere x)`
         const bool names_axis = !alone && (word == "x" || word == "y" || word == "z");
@@ -270,6 +323,7 @@ std::string Builder::lisp_part(Index at, Index end) const {
         arguments += (arguments.empty() ? "" : ", ") + bare(value);
     }
     if (!axis.empty()) arguments += (arguments.empty() ? "" : ", ") + axis;
+    if (!named.empty()) arguments += named.substr(arguments.empty() ? 2 : 0);
     return (moves ? "translate" : name) + "(" + arguments + ")";
 }
 
@@ -369,7 +423,12 @@ bool Builder::joined_by_space(Index at, bool list) {
     const Tok before = kind(name - 1);
     const std::uint32_t end = token(name).end;
     if (found == Tok::String && end == token(at).begin) {
-        foreign(span(name, at), "a string holds no values").help("join it to them: `\"r = \" + r`");
+        const std::string joined = joined_string(text(at), "{");
+        Diagnostic &d = foreign(span(name, at), "a string holds no values");
+        if (joined.empty())
+            d.help("join it to them: `\"r = \" + r`");
+        else
+            d.help("write " + in_code(joined), {{span(name, at), joined}});
         return true;
     }
     if (text(name) == "new") {
@@ -378,6 +437,7 @@ bool Builder::joined_by_space(Index at, bool list) {
         return true;
     }
     if (lisp_call(at)) return true;
+    if (list && call_of_row(enclosing(at))) return true;
     if (found == Tok::Name || (before != Tok::Comma && before != Tok::Open &&
                                before != Tok::ListOpen && before != Tok::FreshListOpen))
         return false;

@@ -20,6 +20,9 @@ constexpr std::array<std::string_view, 6> function_words = {"def", "function", "
 constexpr std::array<std::string_view, 6> slider_words = {"slider", "knob",      "input",
                                                           "param",  "parameter", "Slider"};
 constexpr std::array<std::string_view, 4> streams = {"varying", "attribute", "out", "inout"};
+constexpr std::array<std::string_view, 10> screens = {
+    "iResolution", "u_resolution", "uResolution", "resolution", "iMouse",
+    "u_mouse",     "uMouse",       "mouse",       "iFrame",     "iTimeDelta"};
 constexpr std::array<std::string_view, 9> clocks = {
     "time", "iTime", "u_time", "uTime", "iGlobalTime", "t", "seconds", "elapsed", "globalTime"};
 
@@ -49,6 +52,13 @@ std::string_view zero_of(std::string_view type) {
     return {};
 }
 
+// A type of their own making, as `Hit`, `T`: no vector of another library, whose names have digits.
+bool is_their_own(std::string_view type) {
+    return type_named(type) == TypeName::Unknown && !is_type_word(type) && type[0] >= 'A' &&
+           type[0] <= 'Z' && type.find_first_of("0123456789") == type.npos && type != "Shape" &&
+           type != "String" && type != "SDF";
+}
+
 } // namespace
 
 // The parameters between two parentheses, as they would be written here.
@@ -61,13 +71,20 @@ std::string Builder::parameters_text(Index open) const {
             end = match(end) > end ? match(end) + 1 : end + 1;
         while (i + 1 < end && (is_one_of(text(i), qualifiers) || kind(i) == Tok::In)) ++i;
         if (!out.empty()) out += ", ";
-        const bool type_first = kind(i) == Tok::Name && kind(i + 1) == Tok::Name && i + 1 < end;
+        Index named = i + 1; // behind `vec3 &`, `float *`
+        while (named < end &&
+               (is_one_of(kind(named), {Tok::Amp, Tok::Star}) || text(named) == "const"))
+            ++named;
+        const bool type_first = kind(i) == Tok::Name && kind(named) == Tok::Name && named < end;
         const std::string rest(end > i ? text(token(i).begin, token(end - 1).end) : "");
-        if (!type_first)
+        if (match(i) > i && match(i) < end && is_one_of(kind(i), {Tok::StrayBrace, Tok::Trailing}))
+            out += text(token(i + 1).begin, token(match(i) - 1).end); // `{ a, b }: Options`
+        else if (!type_first)
             out += rest;
         else
-            out += std::string(text(i + 1)) + ": " + std::string(text(i)) +
-                   std::string(text(token(i + 1).end, token(end - 1).end));
+            out += std::string(text(named)) +
+                   (is_their_own(text(i)) ? "" : ": " + std::string(text(i))) +
+                   std::string(text(token(named).end, token(end - 1).end));
         i = end + 1;
     }
     return out;
@@ -157,6 +174,11 @@ bool Builder::foreign_stream(Index first, Index name) {
         foreign(span(first, name), "the seconds are `time`")
             .help("leave the line away, and write `time`",
                   means_time(declared) ? std::vector<Edit>{away} : std::vector<Edit>{});
+        return true;
+    }
+    if (is_one_of(declared, screens)) {
+        foreign(span(first, name), "a field knows no screen: it is a function of the point alone")
+            .help("leave the line away", {away});
         return true;
     }
     const std::string value = type == "bool"                        ? "true"
@@ -298,9 +320,13 @@ void Builder::foreign_function(Index first, Index name, bool has_type) {
                !token(after + 1).first_on_line && begins_body(after + 2)) {
         head += " -> " + std::string(text(after + 1));
         after += 2;
-    } else if (has_type)
+    } else if (has_type && !is_their_own(text(name - 1)))
         head += " -> " + std::string(text(name - 1));
     std::vector<Edit> edits{{span(first, after - 1), head}};
+    if (kind(after) == Tok::End && kind(after + 1) == Tok::StrayBrace && text(after) != ";") {
+        edits.push_back({{id_, token(after - 1).end, token(after + 1).end}, " {"});
+        failed_ = after + 1;
+    }
     if (kind(after) == Tok::Colon) {
         if (!indented_body(after, edits)) edits.clear();
         foreign(span(first, name),
@@ -324,7 +350,10 @@ bool Builder::foreign_head(Index first) {
     const bool has_type = !is_one_of(type, qualifiers) && !is_one_of(type, function_words);
 
     if (kind(name + 1) == Tok::Open) {
-        const bool is_function = is_one_of(word, function_words) || is_type_word(type);
+        Index body = match(name + 1) + 1; // perhaps on the line below
+        if (kind(body) == Tok::End && text(body) != ";") ++body;
+        const bool is_function = is_one_of(word, function_words) || is_type_word(type) ||
+                                 is_one_of(kind(body), {Tok::Body, Tok::Trailing, Tok::StrayBrace});
         if (!is_function) return false;
         if (declared.starts_with("main") && word == "void") {
             foreign(span(first, name), "a scene has no " + in_code(declared))
@@ -340,15 +369,14 @@ bool Builder::foreign_head(Index first) {
         foreign_param(first, name);
         return true;
     }
-    const bool curried =
-        !is_one_of(word, qualifiers) && !is_type_word(word) && !is_one_of(word, function_words);
+    const bool typed = name == first + 1 && is_their_own(word);
+    const bool curried = !typed && !is_one_of(word, qualifiers) && !is_type_word(word) &&
+                         !is_one_of(word, function_words);
     if (value && curried) {
         foreign_curried(first, first, name + 1);
         return true;
     }
     if (value) {
-        for (Index i = name + 2; !ends_statement(i); i = match(i) > i ? match(i) + 1 : i + 1)
-            if (kind(i) == Tok::Comma && kind(i + 1) == Tok::Name) lost_.push_back(i + 1);
         const bool changes = in_function_ && is_assigned_after(name);
         const bool known = has_type && type_named(type) != TypeName::Unknown;
         const std::string let =
@@ -357,12 +385,14 @@ bool Builder::foreign_head(Index first) {
                                 changes    ? "a name that is assigned to later is bound with `var`"
                                 : has_type ? "a type stands behind its name, after `let`"
                                            : "a name is bound with `let`");
-        d.help("write " + in_code(let + " = …"), {{span(first, name), let}});
+        std::vector<Edit> edits{{span(first, name), let}};
+        for (Edit &further : further_names(name + 2, name + 2)) edits.push_back(std::move(further));
+        d.help("write " + in_code(let + " = …"), std::move(edits));
         return true;
     }
     if (!ends_statement(name + 1)) return false;
     const bool stream = word == "uniform" || is_one_of(word, streams);
-    if (!stream && !is_type_word(type)) return false;
+    if (!stream && !is_type_word(type) && !typed) return false;
     if (declared != "time") lost_.push_back(name);
     if (!foreign_stream(first, name)) foreign_unbound(first, name, type);
     return true;
@@ -396,6 +426,14 @@ bool Builder::foreign_binding(Index at) {
         const std::string type = "[" + std::string(text(before)) + "]";
         foreign(span(before, at + 1), "a list's type stands in brackets")
             .help("write " + in_code(type), {{span(before, at + 1), type}});
+        return true;
+    }
+    if (before > 0 && kind(before) == Tok::Name && kind(before - 1) != Tok::Colon &&
+        !token(at).first_on_line &&
+        is_one_of(found, {Tok::Number, Tok::String, Tok::Color, Tok::True, Tok::False})) {
+        const std::uint32_t end = token(before).end;
+        diagnostics_.add(Code::SyntaxError, span(at), "a `=` is missing before the value")
+            .help("write `=`", {{{id_, end, end}, " ="}});
         return true;
     }
     if (found == Tok::Minus && before > 0 && kind(at + 1) == Tok::Name && touch(before, at) &&

@@ -1,6 +1,8 @@
 // What other languages write where a rule of the grammar could not go on; see builder.h.
 #include "lang/builder.h"
 
+#include <algorithm>
+
 namespace fathom::lang {
 
 bool Builder::foreign_instead(Index at, std::string message, const std::string &replacement) {
@@ -25,6 +27,12 @@ bool Builder::foreign_operand(Wanted wanted, Index at) {
                    {{span(at), ""}, {{id_, token(at + 1).end, token(at + 1).end}, op}});
         return true;
     }
+    if (found == Tok::For && kind(before) == Tok::ListOpen && call_of_row(before)) return true;
+    if (found == Tok::Let && kind(before) == Tok::If) {
+        foreign(span(before, at), "a condition binds no name: every name has a value")
+            .help("bind it before: `let x = …`, and then `if x > 0 { … }`");
+        return true;
+    }
     if (found == Tok::For && wanted == Wanted::Expression) {
         diagnostics_.add(Code::WrongPlace, span(at), "a `for` has no value")
             .help("write `[for … { … }]` for a list, `union { for … { … } }` for a shape");
@@ -40,7 +48,16 @@ bool Builder::foreign_operand(Wanted wanted, Index at) {
         return true;
     }
     if (found == Tok::Question && kind(before) == Tok::Question) {
-        foreign(span(before, at), "there is no `??`: every name has a value");
+        Index end = at + 1;
+        while (!ends_statement(end) &&
+               !is_one_of(kind(end), {Tok::Comma, Tok::Close, Tok::ListClose}))
+            end = match(end) > end ? match(end) + 1 : end + 1;
+        const bool nothing = before > 0 && is_foreign_value(text(before - 1)); // `null ?? 1`
+        const Span away =
+            nothing ? Span{id_, token(before - 1).begin, token(std::min(at + 1, end)).begin}
+                    : Span{id_, token(before - 1).end, token(end - 1).end};
+        foreign(span(before, at), "there is no `??`: every name has a value")
+            .help("leave it away", {{away, ""}});
         return true;
     }
     if (wanted == Wanted::Statement && found == Tok::In && is_type_word(text(at + 1)) &&
@@ -65,7 +82,10 @@ bool Builder::foreign_operand(Wanted wanted, Index at) {
     }
     if (found == Tok::Fn) {
         Diagnostic &d = foreign(span(at), "a function without a name is written `p => …`");
-        if (kind(at + 1) == Tok::LambdaOpen) d.help("leave `fn` away", {{span(at), ""}});
+        if (kind(at + 1) == Tok::LambdaOpen)
+            d.help("leave `fn` away", {{span(at), ""}});
+        else
+            d.help("write `x => 2 * x`, or `(x, y) => x + y`");
         return true;
     }
     return missing_operand(at);
@@ -74,7 +94,6 @@ bool Builder::foreign_operand(Wanted wanted, Index at) {
 // In brackets, where an element ended and neither a comma nor the bracket's end follows.
 bool Builder::foreign_list(Index at) {
     const Tok found = kind(at);
-    const Index before = at > 0 ? at - 1 : 0;
     if (found == Tok::Colon && (foreign_scope(at) || foreign_slice(at))) return true;
     if (found == Tok::Colon) {
         foreign(span(at), "a range is written with `..`, or `..=` with its end")
@@ -83,12 +102,12 @@ bool Builder::foreign_list(Index at) {
     }
     if (found == Tok::For) {
         const Index open = enclosing(at), close = match(open);
-        const std::string item(text(token(open + 1).begin, token(before).end));
-        const std::string loop(text(token(at).begin, token(close - 1).end));
-        const std::string list = "[" + loop + " { " + item + " }]";
+        const std::string list = nested_loops(open, at);
         Diagnostic &d = foreign(span(at), "in a list, the loop stands before what it gives");
-        if (list.find('\n') == std::string::npos)
+        if (!list.empty() && list.find('\n') == std::string::npos)
             d.help("write " + in_code(list), {{span(open, close), list}});
+        else
+            d.help("write `[for … { … }]`");
         return true;
     }
     return foreign_group(at, true);
@@ -99,6 +118,9 @@ bool Builder::foreign_group(Index at, bool list) {
     const Tok found = kind(at);
     const Index before = at > 0 ? at - 1 : 0;
     if (foreign_lambda(at) || separated_unit(at)) return true;
+    if (found == Tok::Colon && kind(at + 1) == Tok::Name && touch(at, at + 1) && !list &&
+        !touch(at - 1, at) && lisp_call(at))
+        return true;
     if (foreign_word_operator(at) || foreign_comparison(at) || foreign_scope(at)) return true;
     const Index open = enclosing(at);
     const bool head = open >= 2 && kind(open - 2) == Tok::Fn;

@@ -1,12 +1,9 @@
 // Functions without a name as other languages write them, read as ours: `function(p) { … }`,
 // `lambda x, y: …`, `fun x -> …`, `\x -> …`, `|x| …`, `[](float x) { … }`. The words are put right
 // before layout, so that all behind them is read and only the one mistake is told.
-#include "lang/builder.h"
-#include "lang/token.h"
+#include "lang/word_changes.h"
 
 #include <array>
-#include <optional>
-#include <unordered_set>
 
 namespace fathom::lang {
 
@@ -24,11 +21,9 @@ bool begins_body(Tok kind) {
                             Tok::If, Tok::Not});
 }
 
-class Lambdas {
+class Lambdas : WordChanges {
   public:
-    Lambdas(const Source &source, SourceId id, const std::vector<Token> &words,
-            Diagnostics &diagnostics)
-        : source_(source), id_(id), words_(words), diagnostics_(diagnostics) {}
+    using WordChanges::WordChanges;
 
     // Empty where there are none.
     std::vector<Token> run() {
@@ -41,16 +36,8 @@ class Lambdas {
     }
 
   private:
-    Tok kind(std::size_t i) const { return i < words_.size() ? words_[i].kind : Tok::End; }
-    Tok before(std::size_t i) const { return i > 0 ? words_[i - 1].kind : Tok::End; }
-    std::string_view text(std::size_t i) const { return text_of(source_, words_[i]); }
-    std::string text(std::uint32_t begin, std::uint32_t end) const {
-        return source_.text.substr(begin, end - begin);
-    }
-    Span span(std::uint32_t begin, std::uint32_t end) const { return {id_, begin, end}; }
-
     // The bracket that closes the one at `i`, of those of its kind; 0 where there is none.
-    std::size_t close_of(std::size_t i) const {
+    std::size_t head_close(std::size_t i) const {
         const Tok open = kind(i), close = open == Tok::Open ? Tok::Close : Tok::ListClose;
         int depth = 0;
         constexpr std::size_t longest_head = 400; // words
@@ -60,28 +47,6 @@ class Lambdas {
             if (is_one_of(kind(k), {Tok::Body, Tok::BraceClose, Tok::End})) return 0;
         }
         return 0;
-    }
-
-    // Whether the file has such a name of its own, or may bring one by an import.
-    bool may_be_declared(std::string_view name) {
-        if (!declared_) {
-            declared_.emplace();
-            for (std::size_t i = 0; i + 1 < words_.size(); ++i) {
-                imports_ = imports_ || kind(i) == Tok::Import;
-                if (is_one_of(kind(i), {Tok::Let, Tok::Var, Tok::Fn, Tok::Param}) &&
-                    kind(i + 1) == Tok::Name)
-                    declared_->insert(text(i + 1));
-            }
-        }
-        return imports_ || declared_->contains(name);
-    }
-
-    void begin_change(std::size_t i) {
-        if (!changed_) out_.assign(words_.begin(), words_.begin() + std::ptrdiff_t(i));
-        changed_ = true;
-    }
-    void put(Tok kind, std::uint32_t begin, std::uint32_t end, bool first_on_line = false) {
-        out_.push_back({kind, first_on_line, begin, end});
     }
 
     // `head` is what is written here for [begin, end); the words of `parameters` stay as they are.
@@ -99,7 +64,11 @@ class Lambdas {
         const std::string head = text(words_[open].begin, end) + " =>";
         const bool arrow = past > close + 1; // one of theirs is replaced
         const std::uint32_t until = arrow ? words_[past - 1].end : end;
-        say(words_[first].begin, until, head, span(words_[first].begin, words_[open - 1].end));
+        diagnostics_
+            .add(Code::ForeignSyntax, span(words_[first].begin, words_[open - 1].end),
+                 "a function without a name is written `p => …`")
+            .help("write `" + head + " …`",
+                  {{span(words_[first].begin, words_[open].begin), ""}, {span(end, until), " =>"}});
         for (std::size_t k = open; k <= close; ++k) out_.push_back(words_[k]);
         out_[out_.size() - (close - open + 1)].first_on_line = words_[first].first_on_line;
         put(Tok::FatArrow, until, until);
@@ -141,7 +110,7 @@ class Lambdas {
         if (kind(i) != Tok::Fn || !is_one_of(before(i), {Tok::Colon, Tok::Arrow}) ||
             kind(i + 1) != Tok::Open)
             return false;
-        const std::size_t close = close_of(i + 1);
+        const std::size_t close = head_close(i + 1);
         if (close == 0 || kind(close + 1) != Tok::Arrow) return false;
         for (std::size_t k = i + 2; k < close; ++k)
             if (kind(k) == Tok::Name && !is_type_word(text(k))) return false;
@@ -188,7 +157,7 @@ class Lambdas {
             return true;
         }
         if (kind(i + 1) != Tok::Open) return false;
-        const std::size_t close = close_of(i + 1);
+        const std::size_t close = head_close(i + 1);
         if (close == 0) return false;
         const Tok body = kind(close + 1);
         const bool sign =
@@ -260,7 +229,7 @@ class Lambdas {
     // Java's `(x, y) -> …`, where no type can stand.
     bool by_list_and_arrow(std::size_t &i) {
         if (kind(i) != Tok::Open || !is_one_of(before(i), {Tok::Assign, Tok::Return})) return false;
-        const std::size_t close = close_of(i);
+        const std::size_t close = head_close(i);
         if (close == 0 || kind(close + 1) != Tok::Arrow) return false;
         begin_change(i);
         for (std::size_t k = i; k <= close; ++k) out_.push_back(words_[k]);
@@ -297,7 +266,7 @@ class Lambdas {
         const bool sign = kind(i + 1) == Tok::Amp || kind(i + 1) == Tok::Assign;
         const std::size_t open = i + (sign ? 3 : 2);
         if (kind(open - 1) != Tok::ListClose || kind(open) != Tok::Open) return false;
-        const std::size_t close = close_of(open);
+        const std::size_t close = head_close(open);
         if (close == 0) return false;
         std::size_t past = close + 1;
         if (kind(past) == Tok::Arrow && kind(past + 1) == Tok::Name) past += 2;
@@ -308,15 +277,6 @@ class Lambdas {
         in_parentheses(i, open, close, past, i);
         return true;
     }
-
-    const Source &source_;
-    SourceId id_;
-    const std::vector<Token> &words_;
-    Diagnostics &diagnostics_;
-    std::vector<Token> out_;
-    bool changed_ = false;
-    std::optional<std::unordered_set<std::string_view>> declared_; // made when first needed
-    bool imports_ = false;
 };
 
 } // namespace

@@ -60,6 +60,7 @@ bool Builder::foreign_word_operator(Index at) {
     if (kind(at) != Tok::Name || token(at).first_on_line || at == 0 ||
         !ends_operand(kind(at - 1)) || is_declared(std::string(text(at))))
         return false;
+    if (nothing_compared(at)) return true;
     const auto *row = std::ranges::find(word_operators, text(at), &WordOperator::word);
     if (row == std::end(word_operators)) return false;
     const bool negated = row->ours == "==" && kind(at + 1) == Tok::Not;
@@ -73,6 +74,28 @@ bool Builder::foreign_word_operator(Index at) {
     const std::string ours(negated ? "!=" : row->ours);
     foreign(place, negated ? "inequality is written `!=`" : std::string(row->message))
         .help("write " + in_code(ours), {{place, ours}});
+    return true;
+}
+
+// `s is not None`: every name has a value.
+bool Builder::nothing_compared(Index at) {
+    if (text(at) != "is") return false;
+    const bool negated = kind(at + 1) == Tok::Not;
+    const Index nothing = negated ? at + 2 : at + 1;
+    if (kind(nothing) != Tok::Name || !is_foreign_value(text(nothing)) || text(nothing)[0] == 'T' ||
+        text(nothing)[0] == 'F')
+        return false;
+    const bool whole = kind(at - 1) == Tok::Name && at > 1 &&
+                       is_one_of(kind(at - 2), {Tok::If, Tok::While, Tok::And, Tok::Or, Tok::Open,
+                                                Tok::Assign, Tok::Return, Tok::Not});
+    const std::string_view value = negated ? "true" : "false";
+    Diagnostic &d = foreign(span(at, nothing),
+                            "there is no " + in_code(text(nothing)) + ": every name has a value");
+    if (whole)
+        d.help("the condition is always " + in_code(value),
+               {{span(at - 1, nothing), std::string(value)}});
+    else
+        d.help("leave the condition away");
     return true;
 }
 

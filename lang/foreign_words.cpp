@@ -14,22 +14,29 @@ namespace {
 
 struct ForeignWord {
     std::string_view word, message, help;
-    bool drop = false; // the statement can be left away
+    bool drop = false;     // the statement can be left away
+    bool declares = false; // the next word, whose uses are no new errors
 };
 
 // Words that begin a statement elsewhere. They are names here, so only what follows tells: no `=`,
 // no `.`, and a `(` only where `called`.
 constexpr ForeignWord statement_words[] = {
-    {"class", "there are no classes", "a function with parameters makes the variants of a shape"},
-    {"struct", "there are no records", "give each part a name of its own with `let`"},
+    {"class", "there are no classes", "a function with parameters makes the variants of a shape",
+     false, true},
+    {"impl", "there are no methods of types",
+     "`p.f(x)` is `f(p, x)`: any function is applied by a dot"},
+    {"trait", "there are no user-defined types", "the types are those of the language", true, true},
+    {"mod", "a module is a file of its own", "a file is brought in by `import \"file.sdf\"`"},
+    {"namespace", "a module is a file of its own", "a file is brought in by `import \"file.sdf\"`"},
+    {"struct", "there are no records", "give each part a name of its own with `let`", false, true},
     {"enum", "there are no enumerations", "give each number a name of its own with `let`"},
-    {"interface", "there are no user-defined types", "the types are those of the language"},
+    {"interface", "there are no user-defined types", "leave it away", true, true},
     {"typedef", "there are no user-defined types", "the types are those of the language"},
-    {"type", "there are no user-defined types", "the types are those of the language"},
+    {"type", "there are no user-defined types", "leave it away", true, true},
     {"from", "the library needs no import", "a file is brought in by `import \"file.sdf\"`", true},
     {"include", "a file is brought in by `import`", "write `import \"file.sdf\"`"},
-    {"use", "a file is brought in by `import`", "write `import \"file.sdf\"`"},
-    {"using", "a file is brought in by `import`", "write `import \"file.sdf\"`"},
+    {"use", "the library needs no import", "a file is brought in by `import \"file.sdf\"`", true},
+    {"using", "the library needs no import", "a file is brought in by `import \"file.sdf\"`", true},
     {"precision", "every number is of single precision", "leave the line away", true},
     {"global", "a function reads the names around it as they are", "leave the line away", true},
     {"nonlocal", "a function reads the names around it as they are", "leave the line away", true},
@@ -155,6 +162,11 @@ bool Builder::foreign_statement(Index first) {
         if (kind(after) == Tok::Name && !token(after).first_on_line) failed_ = after;
     }
     if (text(first) == "parametric" && curv_slider(first)) return true;
+    if (text(first) == "enum") {
+        enumeration(first);
+        return true;
+    }
+    if (next == Tok::Name && row->declares) lost_.push_back(first + 1);
     Diagnostic &d = foreign(span(first), std::string(row->message));
     const Index end = statement_end(first);
     if (row->drop)
@@ -176,6 +188,28 @@ bool Builder::may_be_declared(std::string_view name) {
         }
     }
     return has_import_ || all_declared_->contains(name) || is_declared(std::string(name));
+}
+
+// `enum Kind { BALL, CUBE }`: each is a number.
+void Builder::enumeration(Index first) {
+    std::string written;
+    Index open = first + 1;
+    while (kind(open) == Tok::Name) lost_.push_back(open++);
+    const Index close = match(open);
+    bool plain = close > open && close < open + 100;
+    int number = 0;
+    for (Index i = open + 1; i < close; i += 2) {
+        plain =
+            plain && kind(i) == Tok::Name && is_one_of(kind(i + 1), {Tok::Comma, Tok::BraceClose});
+        if (kind(i) == Tok::Name) lost_.push_back(i);
+        written += (number > 0 ? "; let " : "let ") + std::string(text(i)) + " = " +
+                   std::to_string(number);
+        ++number;
+    }
+    foreign(span(first), "there are no enumerations")
+        .help(plain ? "write " + in_code(written) : "give each number a name of its own with `let`",
+              plain && number > 0 ? std::vector<Edit>{{span(first, close), written}}
+                                  : std::vector<Edit>{});
 }
 
 // What was said of the strings in a statement that goes as a whole.
@@ -411,18 +445,15 @@ void Builder::foreign_pipe(Index at) {
     for (Index i = start; chain && i<sign; i = match(i)> i ? match(i) + 1 : i + 1)
         chain = kind(i) == Tok::Name || kind(i) == Tok::Dot || kind(i) == Tok::Open;
     const Index name = at + 1, open = at + 2;
-    const bool argument = kind(open) == Tok::Number || kind(open) == Tok::Name;
-    const bool ready = kind(name) == Tok::Name &&
-                       (kind(open) == Tok::Open || kind(open) == Tok::Trailing || argument);
+    const bool ready =
+        kind(name) == Tok::Name && is_one_of(kind(open), {Tok::Open, Tok::Trailing, Tok::Number,
+                                                          Tok::Name, Tok::ListOpen, Tok::Color});
     if (!chain || !ready) {
         d.help("a function is applied by a dot: `s.rotate(30deg)` for `rotate(s, 30deg)`");
         return;
     }
-    std::vector<Edit> edits{{{id_, token(sign - 1).end, token(name).begin}, "."}};
-    if (argument) {
-        edits.push_back({{id_, token(name).end, token(open).begin}, "("});
-        edits.push_back({{id_, token(open).end, token(open).end}, ")"});
-    }
+    std::vector<Edit> edits;
+    pipe_edits(sign, edits);
     d.help("a function is applied by a dot", std::move(edits));
 }
 
@@ -448,7 +479,7 @@ bool Builder::foreign_concat(Index at) {
 bool Builder::foreign_record(Index brace) {
     const Index close = match(brace);
     const bool names = kind(brace + 2) == Tok::Colon;
-    const bool arguments = brace > 0 && kind(brace - 1) == Tok::Open &&
+    const bool arguments = brace > 0 && is_one_of(kind(brace - 1), {Tok::Open, Tok::Comma}) &&
                            kind(close + 1) == Tok::Close && kind(brace + 1) == Tok::Name;
     if (!names && kind(brace + 1) != Tok::BraceClose) return false;
     if (arguments && names) {

@@ -4,6 +4,7 @@
 #include "lang/token.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace fathom::lang {
 
@@ -123,6 +124,7 @@ class Layout {
     void close(const Token &t, std::size_t i);
     void close_missing();
     void report_unclosed(const Level &open, const Token *instead);
+    Edit closing_edit(const Level &open, const Token *instead) const;
     bool else_if_of_other_languages(const Token &t);
     bool ends_with_callee() const;
     bool transform_waits(const Token &t) const;
@@ -183,13 +185,44 @@ void Layout::report_unclosed(const Level &open, const Token *instead) {
         diagnostics_.add(Code::UnclosedBracket, span(token), "this `" + sign + "` is never closed");
     const std::string closer(1, static_cast<char>(closer_of(open.bracket)));
     if (instead) d.label(span(*instead), "`" + closer + "` is wanted before this");
-    if (instead && open.bracket != Tok::Body && instead->first_on_line)
-        d.help("write `" + closer + "`", {{after_previous(), closer}});
+    if (open.bracket != Tok::Body || !suspect_)
+        d.help("write `" + closer + "`", {closing_edit(open, instead)});
     const std::string_view rest = std::string_view(source_.text).substr(token.end);
     const std::string_view line = rest.substr(0, rest.find('\n'));
     if (const std::size_t comment = line.find("//");
         comment != std::string_view::npos && line.find(closer, comment) != std::string_view::npos)
         d.note("`//` begins a comment; a division without its rest is `div(a, b)`");
+}
+
+// What closes a bracket before `instead`, or at the text's end; with all around it there.
+Edit Layout::closing_edit(const Level &open, const Token *instead) const {
+    const auto margin = [&](const Level &l) {
+        const Token &t = out_.tokens[l.index];
+        const std::string_view line = line_text(source_, position(source_, t.begin).line);
+        return std::string(line.substr(0, indent_of(t)));
+    };
+    const auto edit = [&](std::uint32_t at, std::string closers) {
+        return Edit{{id_, at, at}, std::move(closers)};
+    };
+    const auto closer = [](const Level &l) { return std::string(1, char(closer_of(l.bracket))); };
+    const Token *const first = out_.tokens.data();
+    const bool placed = instead && instead > first && instead < first + out_.tokens.size();
+    const std::uint32_t end = placed ? (instead - 1)->end : previous_end();
+    if (open.bracket != Tok::Body) return edit(end, closer(open));
+    if (instead && !placed) return edit(end, " }");
+    if (instead) return edit(end, "\n" + margin(open) + "}");
+    std::size_t below = open.index + 1; // the first line behind it
+    while (below < out_.tokens.size() && !out_.tokens[below].first_on_line) ++below;
+    const bool on_line = below > open.index + 1;
+    if (on_line && below < out_.tokens.size() &&
+        indent_of(out_.tokens[below]) <= indent_of(out_.tokens[open.index]))
+        return edit(out_.tokens[below - 1].end, " }");
+    std::string closers;
+    for (std::size_t l = levels_.size(); l-- > 1;)
+        closers += levels_[l].bracket != Tok::Body          ? closer(levels_[l])
+                   : on_line && below >= out_.tokens.size() ? " }"
+                                                            : "\n" + margin(levels_[l]) + "}";
+    return edit(end, closers);
 }
 
 void Layout::close_missing() {
@@ -260,7 +293,8 @@ bool Layout::transform_waits(const Token &t) const {
     const Token &name = out_.tokens[open - 1];
     const Tok first = out_.tokens[open + 1].kind;
     const bool method = open > 1 && out_.tokens[open - 2].kind == Tok::Dot; // ours
-    const bool theirs = is_one_of(first, {Tok::ListOpen, Tok::Number, Tok::String, Tok::Minus});
+    const bool theirs = is_one_of(first, {Tok::ListOpen, Tok::Number, Tok::String, Tok::Minus}) ||
+                        (first == Tok::Name && out_.tokens[open + 2].kind == Tok::Assign);
     return name.kind == Tok::Name && theirs && !method &&
            is_foreign_transform(text_of(source_, name)) && indent_of(t) > indent_of(name);
 }
@@ -375,7 +409,12 @@ void Layout::place(std::size_t i) {
 
 Tokens lay_out(const Source &source, SourceId id, const Words &words, Diagnostics &diagnostics) {
     Words ours;
-    ours.tokens = read_foreign_lambdas(source, id, words.tokens, diagnostics);
+    const auto latest = [&]() -> const std::vector<Token> & {
+        return ours.tokens.empty() ? words.tokens : ours.tokens;
+    };
+    for (const auto pass : {read_foreign_forms, read_foreign_matches, read_foreign_lambdas})
+        if (std::vector<Token> changed = pass(source, id, latest(), diagnostics); !changed.empty())
+            ours.tokens = std::move(changed);
     return Layout(source, id, ours.tokens.empty() ? words : ours, diagnostics).run();
 }
 

@@ -2,6 +2,7 @@
 #include "lang/lexer.h"
 
 #include "lang/ast.h"
+#include "lang/builder.h"
 #include "lang/vocabulary.h"
 
 #include "base/single.h"
@@ -41,6 +42,10 @@ constexpr std::string_view sign_table[] = {"..=", "->", "=>", "..", "==", "!=", 
 std::string quoted_code(std::string_view text) { return "`" + std::string(text) + "`"; }
 
 } // namespace
+
+bool is_keyword_text(std::string_view word) {
+    return std::ranges::find(keyword_table, word, &Keyword::text) != keyword_table.end();
+}
 
 std::optional<NumberWord> read_number(std::string_view word) {
     const std::size_t length = number_length(word);
@@ -198,6 +203,7 @@ void Lexer::string(std::uint32_t begin, std::uint32_t end) {
 // What no rule of the words reads: a `#`, a string between typographic quotes. Its end, or 0.
 std::uint32_t Lexer::by_hand(std::uint32_t begin) {
     const char first = source_.text[begin];
+    if (const std::uint32_t end = name_with_letters(begin); end > 0) return end;
     if (first == '\xE2') return smart_string(begin);
     if (first != '#') return 0;
     std::size_t end = begin + 1;
@@ -247,6 +253,12 @@ void Lexer::unclosed_string(std::uint32_t begin, std::uint32_t end) {
 
 void Lexer::quoted(std::uint32_t begin, std::uint32_t end) {
     add(Tok::String, begin, end);
+    const std::string joined =
+        source_.text[begin] == '`' ? joined_string(slice(begin, end), "${") : std::string();
+    if (!joined.empty()) {
+        foreign(begin, end, "a string holds no values", joined);
+        return;
+    }
     foreign(begin, end, "a string stands in double quotes",
             "\"" + std::string(slice(begin + 1, end - 1)) + "\"");
 }
@@ -367,16 +379,12 @@ std::optional<Span> Lexer::assignment_from(std::uint32_t begin, std::uint32_t en
     return span(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
 }
 
-// Greek letters as words, powers and roots as they are written here; empty: none of these.
-static std::string letter_or_sign(std::string_view text) {
+// Powers and roots as they are written here; empty: none of these.
+static std::string power_or_root(std::string_view text) {
     constexpr std::pair<std::string_view, std::string_view> ours[] = {
-        {"\xCE\xB1", "alpha"},  {"\xCE\xB2", "beta"}, {"\xCE\xB3", "gamma"},
-        {"\xCE\xB4", "delta"},  {"\xCE\xB5", "eps"},  {"\xCE\xB8", "theta"},
-        {"\xCE\xBB", "lambda"}, {"\xCF\x86", "phi"},  {"\xCF\x95", "phi"},
-        {"\xCF\x89", "omega"},  {"\xCF\x84", "tau"},  {"\xCF\x83", "sigma"},
-        {"\xC2\xB2", "^2"},     {"\xC2\xB3", "^3"},   {"\xE2\x88\x9A", "sqrt(x)"}};
-    for (const auto &[theirs, name] : ours)
-        if (theirs == text) return std::string(name);
+        {"\xC2\xB2", "^2"}, {"\xC2\xB3", "^3"}, {"\xE2\x88\x9A", "sqrt(x)"}};
+    for (const auto &[theirs, written] : ours)
+        if (theirs == text) return std::string(written);
     return {};
 }
 
@@ -398,12 +406,10 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
             .help("write `pi`", {{span(begin, end), "pi"}});
         return;
     }
-    if (const std::string ours = letter_or_sign(text); !ours.empty()) {
-        const bool letter = ours.find_first_of("^(") == ours.npos;
-        add(letter ? Tok::Name : Tok::Bad, begin, end);
-        Diagnostic &d = report(Code::BadCharacter, begin, end,
-                               letter ? "names use the letters a to z"
-                                      : "this sign is not one of the language's");
+    if (const std::string ours = power_or_root(text); !ours.empty()) {
+        add(Tok::Bad, begin, end);
+        Diagnostic &d =
+            report(Code::BadCharacter, begin, end, "this sign is not one of the language's");
         if (ours.find('(') == ours.npos)
             d.help("write " + quoted_code(ours), {{span(begin, end), ours}});
         else
@@ -440,7 +446,8 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
         report(Code::BadCharacter, begin, end, "a string stands in straight double quotes")
             .help("write `\"`");
     } else if (first.value >= 0x80) {
-        report(Code::BadCharacter, begin, end, "names use the letters a to z, digits and `_`")
+        report(Code::BadCharacter, begin, end,
+               "names use the letters a to z, A to Z, digits and `_`")
             .note("comments and strings may hold any letters");
     } else if (text[0] == '\\') {
         report(Code::BadCharacter, begin, end, "the language does not use `\\`")

@@ -4,13 +4,18 @@
 
 #include "lang/token.h"
 
+#include <algorithm>
+#include <unordered_map>
+
 namespace fathom::lang {
 
 // Collects the words of a text.
 class Lexer {
   public:
     Lexer(const Source &source, SourceId id, Diagnostics &diagnostics)
-        : source_(source), id_(id), diagnostics_(diagnostics) {}
+        : source_(source), id_(id), diagnostics_(diagnostics),
+          beyond_ascii_(std::any_of(source.text.begin(), source.text.end(),
+                                    [](char c) { return (c & 0x80) != 0; })) {}
 
     void line_end() { fresh_line_ = true; }
     void line_comment(std::uint32_t begin, std::uint32_t end);
@@ -44,6 +49,7 @@ class Lexer {
     Diagnostic &foreign(std::uint32_t begin, std::uint32_t end, std::string message,
                         std::string replacement);
     std::optional<Span> assignment_from(std::uint32_t begin, std::uint32_t end) const;
+    std::uint32_t name_with_letters(std::uint32_t begin);
     bool strange_sign(std::uint32_t begin, std::uint32_t end, std::uint32_t code_point);
 
     const Source &source_;
@@ -53,6 +59,12 @@ class Lexer {
     bool is_named(std::string_view number) const;
 
     bool fresh_line_ = true;
+    const bool beyond_ascii_; // the text has other letters somewhere
+    struct ToldName {
+        Span first;
+        std::size_t uses = 0;
+    };
+    std::unordered_map<std::string_view, ToldName> told_names_; // with letters that no name has
     std::uint32_t open_choices_ = 0; // `#if`s whose `#endif` is yet to come
 };
 
@@ -66,6 +78,8 @@ inline bool is_hex(char c) {
 inline unsigned hex_value(char c) {
     return static_cast<unsigned>(is_digit(c) ? c - '0' : (c | 0x20) - 'a' + 10);
 }
+
+bool is_keyword_text(std::string_view word);
 
 // A word that begins like a number and is none (bad_numbers.cpp).
 struct BadNumber {

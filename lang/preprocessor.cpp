@@ -87,6 +87,8 @@ void Lexer::directive(std::uint32_t begin, std::uint32_t end, std::uint32_t line
     } else if (word == "include" && rest.starts_with('"') && quote != rest.npos) {
         const std::string import = "import " + std::string(rest.substr(0, quote + 1));
         d.help("write `" + import + "`", {{span(begin, line_end), import}});
+    } else if (word == "include" && rest.starts_with('<')) {
+        d.help("the library needs no import: leave the line away", {{span(begin, line_end), ""}});
     } else if (word == "include" || word == "import") {
         d.help("another file is brought in by `import \"file.sdf\"`");
     } else if (word == "define") {

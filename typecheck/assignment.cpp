@@ -1,6 +1,6 @@
 // Assignments: to a variable, a component, an element; and the journal of what they overwrote, so
 // that a trial can be undone.
-#include "typecheck/interpreter.h"
+#include "typecheck/remedies.h"
 
 #include <fmt/format.h>
 
@@ -223,9 +223,23 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
         else if (by_let && in_body)
             d.help(fmt::format("write `var {}` where it is declared", name->text),
                    {{{declared.source, declared.begin - 4, declared.begin - 1}, "var"}});
-        else if (ev.calls.empty() && ev.in_field == 0)
-            d.help("a scene's names keep their value: give the new value a name of its own");
-        else
+        else if (ev.calls.empty() && ev.in_field == 0) {
+            std::string fresh;
+            std::vector<Edit> edits;
+            if (path.empty()) edits = renamed_from(ev, ast, node, name->text, fresh);
+            if (!fresh.empty())
+                d.help(fmt::format("a scene's names keep their value: give the new value a name of "
+                                   "its own, `let {} = …`",
+                                   fresh),
+                       std::move(edits));
+            else if (!path.empty())
+                d.help("what is made does not change: a shape is moved by `.translate(…)`, which "
+                       "gives a new one");
+            else
+                d.help("a scene's names keep their value: in a loop, shapes count where they "
+                       "stand, a list is `[for … { … }]`, and a sum is `fold(list, 0, (a, b) => a "
+                       "+ b)`");
+        } else
             d.help("declare it with `var` inside the function");
         if (!is_argument) assign(ev, found->frame, found->slot, poison()); // one cause, one report
         return;

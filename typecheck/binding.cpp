@@ -27,10 +27,11 @@ static void report_unknown_arguments(Interpreter &ev, std::string_view name,
                             : i + 1 == unknown.size() ? " and "
                                                       : ", ",
                             args[unknown[i]].name->text);
+    Fix fix = remedy_of_arguments(ev, name, formals, args, unknown, callee);
+    if (!fix.edits.empty() && ev.quiet == 0) join_sign_edits(ev, args, fix);
     Diagnostic &d = report(
         ev, Code::UnknownArgument, args[unknown[0]].name->span,
         fmt::format("`{}` has no argument{} {}", name, unknown.size() == 1 ? "" : "s", list));
-    const Fix fix = remedy_of_arguments(ev, name, formals, args, unknown, callee);
     if (!fix.message.empty()) d.help(fix.message, fix.edits);
     d.note(fmt::format("it is `{}`", signature_text(name, formals)));
 }
@@ -111,6 +112,10 @@ static void report_missing(Interpreter &ev, std::string_view name, std::span<con
         formals, [](const Formal &f) { return !f.optional && !f.takes_rest; });
     if (required == 1 && formals.back().takes_rest && !args.empty() && args.back().trailing)
         d.help(fmt::format("write `{}(0.2) {{ … }}`", name));
+    if (name == "random" && args.empty() && call.source) {
+        const Span inside{call.source, call.end - 1, call.end - 1};
+        d.help("a random number belongs to a seed: `random(1)`", {{inside, "1"}});
+    }
     if (name == "range" && args.size() == 1) { // Python's
         const Span before{args[0].span.source, args[0].span.begin, args[0].span.begin};
         d.help("a range begins somewhere: `range(0, n)`, or `0..n`", {{before, "0, "}});

@@ -387,6 +387,14 @@ Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::C
             Diagnostic &d = report(ev, Code::UnknownMember, m->name.span,
                                    fmt::format("there is no function `{}` for {}", m->name.text,
                                                describe(ev, object)));
+            if (is_needless_method(m->name.text) && place.source) {
+                const Span behind{place.source, ast.exprs[m->object].span.end, place.end};
+                const auto way = way_from_elsewhere(m->name.text);
+                d.help(way.empty() ? fmt::format("leave `.{}(…)` away", m->name.text)
+                                   : std::string(way),
+                       {{behind, ""}});
+                return poison();
+            }
             if (object.kind == ValueKind::Shape) help_with_method(d, *m, ast, call);
             if (const auto way = way_from_elsewhere(m->name.text); !d.fix && !way.empty())
                 d.help(std::string(way));

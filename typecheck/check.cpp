@@ -273,6 +273,7 @@ Checked check(Sources &sources, SourceId root, const std::string &root_identity,
         ev.current_module = module;
         check_names(ev, ast, m.frame);
         build_scene(ev, contributions, ast, m.frame);
+        tell_hiding_functions(ev);
         for (const Override &o : options.overrides) {
             bool known = false;
             for (const ir::Param &p : ev.scene.params) known = known || p.name == o.name;

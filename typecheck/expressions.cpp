@@ -368,8 +368,8 @@ static Value eval_member(Interpreter &ev, const File &ast, const lang::Member &m
         return call_value(ev, *f, m.name.text, {&self, 1}, place, m.name.span);
     }
     if (is_numeric(object)) return swizzle(ev, object, m.name.text, m.name.span);
-    report(ev, Code::UnknownMember, m.name.span,
-           fmt::format("{} has no member `{}`", describe(ev, object), m.name.text));
+    report_unknown_member(ev, object, m.name,
+                          {place.source, ast.exprs[m.object].span.end, place.end}, place);
     return poison();
 }
 

@@ -243,6 +243,7 @@ struct Interpreter {
     std::size_t made = 0; // bytes of what the arenas below do not count themselves: see `held`
     bool out_of_budget = false;
     std::size_t names_compared = 0;
+    std::vector<std::pair<Symbol, Span>> hiding{}; // the user's functions named as the library's
     std::map<std::pair<std::uint32_t, std::string>, Span> unknown_names{}; // by file, as first told
     std::map<std::vector<std::uint64_t>, Specialization> specializations{};
     std::unordered_map<std::vector<std::uint64_t>, Value, HashOfWords> remembered{};
@@ -279,6 +280,8 @@ constexpr int max_known_sets = 8; // of one function's arguments that its body i
 Symbol intern(Interpreter &ev, const std::string &text);
 std::uint32_t push_frame(Interpreter &ev, std::uint32_t parent);
 void pop_frame(Interpreter &ev, std::uint32_t frame);
+// Says of those of `hiding` so that an error names.
+void tell_hiding_functions(Interpreter &ev);
 void declare(Interpreter &ev, std::uint32_t frame, Symbol name, Value value, bool is_var,
              Span place);
 struct Found {

@@ -33,6 +33,22 @@ void pop_frame(Interpreter &ev, std::uint32_t frame) {
 
 bool is_builtin(Symbol name) { return name < builtins().size(); }
 
+static void tell_hiding(Interpreter &ev, Symbol name, Span place) {
+    report(ev, Code::HidesName, place,
+           fmt::format("`{0}` hides the library's `{0}` in this file", ev.symbol_names[name]));
+}
+
+void tell_hiding_functions(Interpreter &ev) {
+    for (const auto &[name, place] : ev.hiding) {
+        const std::string quoted = fmt::format("`{}`", ev.symbol_names[name]);
+        const auto &items = ev.diagnostics.items();
+        const bool named = std::ranges::any_of(items, [&](const Diagnostic &d) {
+            return d.severity == Severity::Error && d.message.find(quoted) != std::string::npos;
+        });
+        if (named) tell_hiding(ev, name, place);
+    }
+}
+
 void declare(Interpreter &ev, std::uint32_t frame, Symbol name, Value value, bool is_var,
              Span place) {
     Frame &f = ev.frames[frame];
@@ -56,10 +72,12 @@ void declare(Interpreter &ev, std::uint32_t frame, Symbol name, Value value, boo
         }
         if (frame != ev.prelude_frame && !ev.modules[ev.current_module].library && place.source) {
             if (is_builtin(name) || ev.prelude_items.contains(name) ||
-                slot_in_module(ev, ev.prelude_frame, name))
-                report(ev, Code::HidesName, place,
-                       fmt::format("`{0}` hides the library's `{0}` in this file",
-                                   ev.symbol_names[name]));
+                slot_in_module(ev, ev.prelude_frame, name)) {
+                if (is_function(value)) // its author wants it: told where something is wrong
+                    ev.hiding.emplace_back(name, place);
+                else
+                    tell_hiding(ev, name, place);
+            }
         }
     }
     f.bindings.push_back({name, value, is_var, place});

@@ -120,6 +120,7 @@ bool lacking(const Interpreter &ev, const std::string &name, const std::string &
 
 // `45*deg`, `5 * mm`: the unit touches its number, and lengths have none.
 static std::vector<Edit> unit_edit(const Interpreter &ev, const std::string &name, Span place) {
+    if (name == "t") return {{place, "time"}};
     const bool length = name == "mm" || name == "cm";
     if (name != "deg" && !length) return {};
     const std::string_view before = text(ev.sources, {place.source, 0, place.begin});
@@ -137,6 +138,15 @@ static bool is_whole_argument(const Interpreter &ev, Span place) {
     const std::size_t before = place.begin == 0 ? all.npos
                                                 : all.find_last_not_of(" \t\n", place.begin - 1),
                       behind = all.find_first_not_of(" \t\n", place.end);
+    int depth = 0; // a part of a vector is no axis
+    constexpr std::size_t farthest = 200;
+    for (std::size_t i = place.begin, n = 0; i-- > 0 && n < farthest; ++n) {
+        if (all[i] == ')' || all[i] == ']') ++depth;
+        if ((all[i] == '(' || all[i] == '[') && depth-- == 0) {
+            if (all[i] == '[') return false;
+            break;
+        }
+    }
     return before != all.npos && behind != all.npos &&
            std::string_view("(,:").find(all[before]) != std::string_view::npos &&
            std::string_view("),").find(all[behind]) != std::string_view::npos;
@@ -159,6 +169,7 @@ static std::optional<Span> bound_below(const Wanted &wanted, const std::string &
 
 void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place,
                          const Wanted &wanted) {
+    if (std::ranges::any_of(name, [](char c) { return (c & 0x80) != 0; })) return; // letters, told
     std::string near = likely_name(ev, frame, name, wanted);
     if (name.size() == 1 && place.source && !is_whole_argument(ev, place)) near.clear();
     if (lacking(ev, name, near)) return; // one cause, one report

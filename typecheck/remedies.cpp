@@ -43,87 +43,13 @@ void help_with_cut(Diagnostic &d, const Value &cut) {
         d.help("`.offset(r)` moves a shape's surface outwards by r, `.offset(-r)` inwards");
 }
 
-// -- arguments -----------------------------------------------------------------------------------
-
-namespace {
-
-constexpr std::pair<std::string_view, std::string_view> argument_names[] = {
-    {"color", "diffuse"},
-    {"colour", "diffuse"},
-    {"albedo", "diffuse"},
-    {"ambient", "diffuse"},
-    {"shininess", "exponent"},
-    {"emissive", "emission"},
-    {"position", "at"},
-    {"pos", "at"},
-    {"center", "at"},
-    {"eye", "at"},
-    {"target", "look_at"},
-    {"lookat", "look_at"},
-    {"dir", "direction"},
-    {"h", "height"},
-    {"r", "radius"},
-    {"r1", "major"},
-    {"r2", "minor"},
-    {"R", "major"},
-    {"r", "minor"},
-    {"r1", "bottom"},
-    {"r2", "top"},
-    {"bottom_radius", "bottom"},
-    {"top_radius", "top"},
-    {"radius1", "major"},
-    {"radius2", "minor"},
-    {"radius", "r"},
-    {"radius", "k"},
-    {"r", "k"},
-    {"amount", "r"},
-    {"distance", "r"},
-    {"n", "sides"},
-    {"n", "count"},
-    {"count", "n"},
-    {"factor", "by"},
-    {"v", "axis"},
-    {"v", "by"},
-    {"vector", "by"},
-    {"a", "angle"},
-    {"degrees", "angle"},
-    {"faces", "sides"},
-    {"width", "size"},
-    {"dimensions", "size"},
-    {"thick", "thickness"},
-    {"width", "thickness"},
-    {"step", "cell"},
-    {"spacing", "cell"},
-    {"period", "cell"},
-    {"size", "cell"},
-    {"material", "material"},
-    {"normal", "axis"},
-    {"rounding", "radius"},
-    {"round_radius", "radius"},
-    {"length", "height"},
-    {"roundRadius", "radius"}};
-
-// What only other ways of making shapes need.
-constexpr std::array<std::string_view, 8> needless = {
-    "center", "centre", "centered", "segments", "resolution", "convexity", "slices", "fn"};
-
-// What physically based materials have.
-bool is_gloss(std::string_view name) {
-    return name == "roughness" || name == "metallic" || name == "metalness" || name == "gloss" ||
-           name == "glossiness" || name == "smoothness" || name == "reflectivity";
-}
-
-bool has(std::span<const Formal> formals, std::string_view name) {
-    return std::ranges::any_of(formals, [&](const Formal &f) { return f.name == name; });
-}
-
-std::string text_of(const Interpreter &ev, Span span) {
+std::string source_text(const Interpreter &ev, Span span) {
     return std::string(text(ev.sources, span));
 }
 
 // With parentheses where operators stand in it.
-std::string operand_text(const Interpreter &ev, Span span) {
-    const std::string s = text_of(ev, span);
+std::string operand_source(const Interpreter &ev, Span span) {
+    const std::string s = source_text(ev, span);
     int depth = 0;
     for (std::size_t i = 0; i < s.size(); ++i) {
         if (s[i] == '(' || s[i] == '[' || s[i] == '{') ++depth;
@@ -134,139 +60,16 @@ std::string operand_text(const Interpreter &ev, Span span) {
     return s;
 }
 
-Span whole(const Argument &a) { return a.name ? join(a.name->span, a.span) : a.span; }
-
-// The argument with the comma that it needs no more.
-Span with_comma(std::span<const Argument> args, std::size_t at, Span callee) {
-    const Span own = whole(args[at]);
-    if (at > 0 && args[at - 1].span.begin >= callee.end)
-        return {own.source, args[at - 1].span.end, own.end};
-    if (at + 1 < args.size() && !args[at + 1].trailing)
-        return {own.source, own.begin, whole(args[at + 1]).begin};
-    return own;
-}
-
-// The axis that an argument's name says: `x`; of a box also `width`, `height`, `depth`.
-char axis_of(std::string_view name, std::string_view function) {
-    if (name == "x" || name == "y" || name == "z") return name[0];
-    if (function != "box" && function != "rectangle" && function != "ellipsoid") return ' ';
-    if (name == "width" || name == "w") return 'x';
-    if (name == "height" || name == "h") return 'y';
-    return name == "depth" || name == "d" || name == "length" ? 'z' : ' ';
-}
-
-// `x: 2, z: 3` of a function that takes an axis, or a vector.
-bool letters_remedy(Interpreter &ev, std::string_view function, std::span<const Formal> formals,
-                    std::span<const Argument> args, const std::vector<std::size_t> &letters,
-                    Span callee, Fix &fix) {
-    const auto letter = [&](std::size_t i) { return axis_of(args[i].name->text, function); };
-    const Argument &first = args[letters[0]];
-    std::array<std::string, 3> parts;
-    parts.fill(function == "scale" ? "1" : "0");
-    for (std::size_t i : letters) parts[std::size_t(letter(i) - 'x')] = text_of(ev, args[i].span);
-    std::string vector = "[" + parts[0] + ", " + parts[1] + ", " + parts[2] + "]";
-    const auto named = [&](const Argument &a) {
-        return a.name && (a.name->text == "angle" || a.name->text == "axis");
-    };
-    const bool turns = has(formals, "angle") && has(formals, "axis");
-    if (turns && std::ranges::any_of(args, named)) return false;
-    if (turns && letters.size() == 1) {
-        const std::string axis(1, static_cast<char>(letter(letters[0]) - 'x' + 'X'));
-        const std::string value = text_of(ev, first.span) + ", axis: " + axis;
-        fix = {fmt::format("write `{}({})`", function, value), {{whole(first), value}}};
-        return true;
-    }
-    if (turns) fix.edits.push_back({callee, "rotate_euler"});
-    const auto taken = std::ranges::find_if(formals, [](const Formal &f) {
-        return f.vector_size > 0 && f.name != "axis" && f.name != "towards";
-    });
-    if (!turns && taken == formals.end()) return false;
-    if (!turns && taken->vector_size == 2) vector = "[" + parts[0] + ", " + parts[1] + "]";
-    fix.message = fmt::format("write `{}({})`", turns ? "rotate_euler" : function, vector);
-    fix.edits.push_back({whole(first), vector});
-    for (std::size_t i = 1; i < letters.size(); ++i)
-        fix.edits.push_back({with_comma(args, letters[i], callee), ""});
-    return true;
-}
-
-std::string our_argument(std::string_view theirs, std::span<const Formal> formals) {
-    for (const auto &[elsewhere, ours] : argument_names)
-        if (elsewhere == theirs && has(formals, ours)) return std::string(ours);
-    std::vector<std::string> names;
-    for (const Formal &f : formals)
-        if (f.name[0] != '_') names.emplace_back(f.name);
-    const std::string near = nearest_name(theirs, names);
-    return near.empty() ? shortest_begun_by(theirs, names) : near; // `r` for `radius`
-}
-
-} // namespace
-
-Fix remedy_of_arguments(Interpreter &ev, std::string_view function, std::span<const Formal> formals,
-                        std::span<const Argument> args, const std::vector<std::size_t> &unknown,
-                        Span callee) {
-    Fix fix;
-    std::vector<std::size_t> letters, others;
-    const auto axes = std::ranges::count_if(
-        unknown, [&](std::size_t i) { return axis_of(args[i].name->text, function) != ' '; });
-    const bool all_axes = axes == (function == "rectangle" ? 2 : 3);
-    for (std::size_t i : unknown) {
-        const std::string &name = args[i].name->text;
-        const bool is_letter =
-            all_axes ? axis_of(name, function) != ' ' : name == "x" || name == "y" || name == "z";
-        (is_letter ? letters : others).push_back(i);
-    }
-    std::vector<std::string> proposed; // each of our arguments once
-    const auto is_free = [&](std::string_view ours) {
-        return std::ranges::find(proposed, ours) == proposed.end() &&
-               std::ranges::none_of(
-                   args, [&](const Argument &b) { return b.name && b.name->text == ours; });
-    };
-    if (!letters.empty() && !letters_remedy(ev, function, formals, args, letters, callee, fix))
-        others.insert(others.begin(), letters.begin(), letters.end());
-    const auto say = [&](std::string help) {
-        fix.message += fix.message.empty() ? help : "; " + help;
-    };
-    for (std::size_t i : others) {
-        const Argument &a = args[i];
-        const std::string &name = a.name->text;
-        const bool diameter = name == "d" || name == "diameter" || name == "dia";
-        if (std::ranges::find(needless, name) != needless.end() && !has(formals, "at")) {
-            say(fmt::format("shapes are centred and smooth: leave `{}` away", name));
-            fix.edits.push_back({with_comma(args, i, callee), ""});
-        } else if (diameter && has(formals, "radius") && is_free("radius")) {
-            proposed.emplace_back("radius");
-            const std::string value = operand_text(ev, a.span) + " / 2";
-            say(fmt::format("write `radius: {}`", value));
-            fix.edits.push_back({a.name->span, "radius"});
-            fix.edits.push_back({a.span, value});
-        } else if ((name == "r1" || name == "r2") && has(formals, "radius")) {
-            if (name == "r2" && fix.message.find("capped_cone") != std::string::npos) continue;
-            say("a cone without its tip is `capped_cone(bottom: …, top: …, height: …)`");
-        } else if (function == "material" && is_gloss(name)) {
-            say(fmt::format("for `{}` there is `exponent`, from 1 (dull) to 1000 (glossy), and "
-                            "`specular`, the highlight's colour",
-                            name));
-        } else if (name == "within" && function != "within") {
-            say("a region stands behind the whole: `.within(ball(3))`");
-        } else if (const std::string ours = our_argument(name, formals);
-                   !ours.empty() && is_free(ours)) {
-            proposed.push_back(ours);
-            say(others.size() == 1 ? fmt::format("did you mean `{}`?", ours)
-                                   : fmt::format("write `{}` for `{}`", ours, name));
-            fix.edits.push_back({a.name->span, ours});
-        }
-    }
-    return fix;
-}
+Span whole_argument(const Argument &a) { return a.name ? join(a.name->span, a.span) : a.span; }
 
 // -- the order of arguments ----------------------------------------------------------------------
 
 Fix remedy_of_duplicate(Interpreter &ev, std::string_view function, std::span<const Argument> args,
                         const Argument &named, Span call) {
-    std::string list = text_of(ev, named.span);
+    std::string list = source_text(ev, named.span);
     for (const Argument &a : args) {
         if (a.trailing) return {};
-        if (&a != &named) list += ", " + text_of(ev, whole(a));
+        if (&a != &named) list += ", " + source_text(ev, whole_argument(a));
     }
     const std::string written = fmt::format("{}({})", function, list);
     if (written.find('\n') != std::string::npos) return {};
@@ -331,7 +134,8 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
     const auto join_others = [&](const Argument &moved) {
         std::string list;
         for (const Argument &a : args)
-            if (&a != &moved) list += (list.empty() ? "" : ", ") + text_of(ev, whole(a));
+            if (&a != &moved)
+                list += (list.empty() ? "" : ", ") + source_text(ev, whole_argument(a));
         return list;
     };
     const auto say = [&](std::string message, std::string written) {
@@ -342,17 +146,17 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
     };
     if (const auto order =
             formals.back().takes_rest ? std::nullopt : other_order(ev, function, args)) {
-        const bool method = text_of(ev, args[0].span) ==
-                            text_of(ev, call).substr(0, args[0].span.end - args[0].span.begin);
+        const bool method = source_text(ev, args[0].span) ==
+                            source_text(ev, call).substr(0, args[0].span.end - args[0].span.begin);
         const bool chained = method || takes_shape;
-        const std::string first = text_of(ev, args[(*order)[0]].span);
+        const std::string first = source_text(ev, args[(*order)[0]].span);
         const std::size_t shapes = static_cast<std::size_t>(std::ranges::count_if(args, is_shape));
         std::string list;
         for (std::size_t i = 1; i < order->size(); ++i)
-            list += (i > 1 ? ", " : "") + text_of(ev, args[(*order)[i]].span);
+            list += (i > 1 ? ", " : "") + source_text(ev, args[(*order)[i]].span);
         const std::string written =
             chained && (method || shapes == 1)
-                ? fmt::format("{}.{}({})", operand_text(ev, args[(*order)[0]].span), name, list)
+                ? fmt::format("{}.{}({})", operand_source(ev, args[(*order)[0]].span), name, list)
                 : fmt::format("{}({}, {})", name, first, list);
         std::size_t wrong = 0;
         while (wrong + 1 < order->size() && (*order)[wrong] == wrong) ++wrong;
@@ -370,7 +174,7 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
         if (shape == args.end() || shape->name) return false;
         return say(
             fmt::format("the shape stands first, before what `{}` does to it", name),
-            fmt::format("{}.{}({})", operand_text(ev, shape->span), name, join_others(*shape)));
+            fmt::format("{}.{}({})", operand_source(ev, shape->span), name, join_others(*shape)));
     }
     if (formals.back().takes_rest && type.named == TypeName::Float && !args[0].name &&
         is_shapes(args[0])) {
@@ -380,7 +184,7 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
             std::ranges::all_of(args, [&](const Argument &a) { return !a.name && is_shapes(a); });
         if (alone && !formals[0].optional) { // the number is nowhere
             std::string list;
-            for (const Argument &a : args) list += ", " + text_of(ev, a.span);
+            for (const Argument &a : args) list += ", " + source_text(ev, a.span);
             Diagnostic &d = report(
                 ev, Code::MissingArgument, args[0].span,
                 fmt::format("`{}` wants `{}`, a number, before the shapes", name, formals[0].name));
@@ -394,7 +198,7 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
         std::string numbers, others;
         for (const Argument &a : args) {
             std::string &list = !a.name && is_scalar(ev, a.value) ? numbers : others;
-            list += (list.empty() ? "" : ", ") + text_of(ev, whole(a));
+            list += (list.empty() ? "" : ", ") + source_text(ev, whole_argument(a));
         }
         return say(
             fmt::format("`{}` of `{}` stands first, before the shapes", formals[0].name, name),
@@ -428,7 +232,7 @@ void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeN
             d.help("colours are written without quotes: `red`, `#ff0000`");
         return;
     }
-    const std::string written = text_of(ev, place);
+    const std::string written = source_text(ev, place);
     const bool list = written.starts_with('[') && written.ends_with(']');
     if (wanted == TypeName::Vec3 && list && is_numeric(v) && numeric_type(ev, v) == ir::Type::Vec2)
         d.help("a vec3 has three parts", {{{place.source, place.end - 1, place.end - 1}, ", 0"}});
@@ -447,6 +251,20 @@ void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeN
     if (wanted == TypeName::Color || wanted == TypeName::Material)
         d.help("colours are written without quotes: `red`, `#ff0000`",
                known ? std::vector<Edit>{{place, inside}} : std::vector<Edit>{});
+}
+
+void report_unknown_member(Interpreter &ev, const Value &object, const lang::Identifier &name,
+                           Span behind, Span place) {
+    Diagnostic &d = report(ev, Code::UnknownMember, name.span,
+                           fmt::format("{} has no member `{}`", describe(ev, object), name.text));
+    const bool counts = name.text == "length" || name.text == "size" || name.text == "count";
+    if (object.kind == ValueKind::List && counts && place.source)
+        d.help("write `len(…)`",
+               {{{place.source, place.begin, place.begin}, "len("}, {behind, ")"}});
+    else if (object.kind == ValueKind::Shape)
+        d.help(fmt::format("a shape does not tell what it was made of: bind that first, as in "
+                           "`let {} = 1`, and use it in both places",
+                           short_name(name.text)));
 }
 
 // -- bodies ----------------------------------------------------------------------------------------

@@ -31,6 +31,14 @@ bool lacking(const Interpreter &ev, const std::string &name, const std::string &
 // a shape that was given to what takes none.
 void help_with_shape(Diagnostic &d, std::string_view name);
 
+// What a shape's method elsewhere does that a scene has no need of, as `.save("x.stl")`: it can be
+// left away.
+bool is_needless_method(std::string_view name);
+
+// Reports a member that a value does not have: `list.length`, `shape.radius`; `behind`: from its `.`.
+void report_unknown_member(Interpreter &ev, const Value &object, const lang::Identifier &name,
+                           Span behind, Span place);
+
 // What other languages and libraries call what is here; empty: nothing is known.
 std::string_view name_from_elsewhere(std::string_view name);
 // The same of types.
@@ -39,6 +47,21 @@ std::string_view type_from_elsewhere(std::string_view name);
 std::string_view way_of_type(std::string_view name);
 // How that is done here which they have a name for and the library has not; empty: nothing is known.
 std::string_view way_from_elsewhere(std::string_view name);
+
+// What stands in the text there; an operand in parentheses where operators stand in it; an argument
+// with its name.
+std::string source_text(const Interpreter &ev, Span span);
+std::string operand_source(const Interpreter &ev, Span span);
+Span whole_argument(const Argument &a);
+
+// Where arguments have `=` behind their names, what puts that right joins the other edits of the
+// call, so that they can all be applied; the report of it goes.
+void join_sign_edits(Interpreter &ev, std::span<const Argument> args, Fix &fix);
+
+// For a name of a scene that is given another value: `let f2 = …`, and `f2` from there on. Empty
+// where it is not plain.
+std::vector<Edit> renamed_from(const Interpreter &ev, const File &ast, const lang::Assign &node,
+                               std::string_view name, std::string &fresh);
 
 // For the arguments of a call, by index, whose names its function does not have.
 Fix remedy_of_arguments(Interpreter &ev, std::string_view function, std::span<const Formal> formals,

@@ -451,7 +451,10 @@ std::optional<std::vector<Value>> sequence_items(Interpreter &ev, const Value &v
     Diagnostic &d =
         report(ev, Code::TypeMismatch, place,
                fmt::format("a loop runs over a range or a list, this is {}", describe(ev, v)));
-    if (is_scalar(ev, v)) d.help("write a range: `0..n`");
+    if (is_scalar(ev, v))
+        d.help("write a range: `0..n`",
+               place.source ? std::vector<Edit>{{{place.source, place.begin, place.begin}, "0.."}}
+                            : std::vector<Edit>{});
     return std::nullopt;
 }
 

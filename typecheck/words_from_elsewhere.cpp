@@ -2,8 +2,17 @@
 #include "typecheck/remedies.h"
 
 #include <unordered_map>
+#include <unordered_set>
 
 namespace fathom::typecheck {
+
+bool is_needless_method(std::string_view name) {
+    static const std::unordered_set<std::string_view> needless = {
+        "save",      "export",   "write_stl", "show",      "render_png",   "collect",     "iter",
+        "into_iter", "iter_mut", "to_vec",    "clone",     "copied",       "cloned",      "toArray",
+        "tolist",    "unwrap",   "freeze",    "subdivide", "smooth_shade", "add_to_scene"};
+    return needless.contains(name);
+}
 
 std::string_view name_from_elsewhere(std::string_view name) {
     static const std::unordered_map<std::string_view, std::string_view> ours = {
@@ -80,6 +89,11 @@ std::string_view name_from_elsewhere(std::string_view name) {
         {"printf", "print"},
         {"parseFloat", "float"},
         {"parseInt", "int"},
+        {"X_axis", "X"},
+        {"Y_axis", "Y"},
+        {"Z_axis", "Z"},
+        {"circular_array", "repeat_polar"},
+        {"tile", "repeat"},
         {"subtract", "difference"},
         {"subtraction", "difference"},
         {"intersect", "intersection"}};
@@ -131,8 +145,29 @@ std::string_view way_from_elsewhere(std::string_view name) {
         {"rad", "an angle is in radians as it is"},
         {"iChannel0", "an image is `image(\"file.png\")`, called with a vec2"},
         {"pass", "an empty body is `{ }`; leave the word away"},
-        {"append", "a list is made longer by `concat(list, [x])`, which gives a new one"},
-        {"push", "a list is made longer by `concat(list, [x])`, which gives a new one"},
+        {"append", "a list is made by `[for i in 0..n { … }]`; `concat(list, [x])` gives a longer "
+                   "one"},
+        {"push", "a list is made by `[for i in 0..n { … }]`; `concat(list, [x])` gives a longer "
+                 "one"},
+        {"bpy", "there is no Blender here: a shape is made by a call, as `sphere(1)`"},
+        {"linspace", "n numbers from a to b are `[for i in 0..n { mix(a, b, i / (n - 1)) }]`"},
+        {"arange", "numbers in steps are `range(first, last, step)`"},
+        {"Array", "a list is made by `[for i in 0..n { … }]`"},
+        {"list", "a list needs no conversion: leave `list( … )` away"},
+        {"tuple", "a list is written in brackets: `[1, 2, 3]`"},
+        {"Some", "every name has a value: leave `Some( … )` away"},
+        {"Ok", "every name has a value: leave `Ok( … )` away"},
+        {"unwrap_or", "every name has a value: leave it away"},
+        {"orient", "a shape is turned by `.rotate(90deg, axis: X)`; `cylinder`, `torus` and such "
+                   "lie along Y"},
+        {"bevel",
+         "edges are rounded by `rounded_box(size, r)`, or `.offset(r)` of a smaller shape"},
+        {"chamfer", "edges are rounded by `rounded_box(size, r)`, or `.offset(r)` of a smaller "
+                    "shape"},
+        {"fillet",
+         "edges are rounded by `rounded_box(size, r)`, joints by `smooth_union(r) { … }`"},
+        {"osc", "what swings is computed of `time`: `sin(time)`"},
+        {"shade", "a shape is given a colour or a material by `.paint(…)`"},
         {"extend", "lists are joined by `concat(a, b)`, which gives a new one"},
         {"forEach", "a loop runs over a list: `for x in list { … }`"},
         {"for_each", "a loop runs over a list: `for x in list { … }`"},

@@ -201,7 +201,11 @@ TEST_CASE("characters that are not of the language") {
         {"let a = 2 − 3", "bad-character", "let a = 2 - 3"},
         {"let a = π", "bad-character", "let a = pi"},
         {"let a = 1\u00A0+ 2", "bad-character", "let a = 1 + 2"},
-        {"let a = größe", "bad-character", ""},
+        {"let a = größe", "bad-character", "let a = groesse"},
+        {"let радиус = 1", "bad-character", "let radius = 1"},
+        {"let θ = 1", "bad-character", "let theta = 1"},
+        {"let x₁ = 1", "bad-character", "let x1 = 1"},
+        {"let 半径 = 1", "bad-character", ""},
         {"let a = $fn", "bad-character", ""},
         {"let a = \xff\xfe", "bad-character", ""},
     };
