@@ -333,6 +333,8 @@ class Builder {
     bool foreign_concat(Index at);
     bool foreign_record(Index brace);
     bool curv_slider(Index first);
+    bool curv_block(Index first);
+    std::string slider_text(Index name, Index &value) const;
     bool juxtaposed_calls(Index first, Index at);
     void settle_foreign_names();
 

@@ -199,24 +199,6 @@ bool Builder::foreign_stream(Index first, Index name) {
     return true;
 }
 
-// Curv's `parametric r :: slider[0, 2] = 1`.
-bool Builder::curv_slider(Index first) {
-    const Index name = first + 1, open = name + 4, close = match(open), value = close + 2;
-    const bool plain = kind(name + 1) == Tok::Colon && kind(name + 2) == Tok::Colon &&
-                       kind(open) == Tok::ListOpen && close == open + 4 &&
-                       kind(open + 2) == Tok::Comma && kind(close + 1) == Tok::Assign &&
-                       kind(value) == Tok::Number;
-    if (!plain) return false;
-    const std::string written = "param " + std::string(text(name)) + " = " +
-                                std::string(text(value)) + " in " + std::string(text(open + 1)) +
-                                ".." + std::string(text(open + 3));
-    lost_.push_back(name);
-    failed_ = value;
-    foreign(span(first), "a parameter is declared with `param`")
-        .help("write " + in_code(written), {{span(first, value), written}});
-    return true;
-}
-
 // `let [a, b] = …`, `a, b = …`: the names stand from `from` to before `past`.
 void Builder::destructuring(Index first, Index from, Index past, Index assign) {
     std::vector<Index> names;

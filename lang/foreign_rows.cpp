@@ -43,6 +43,82 @@ std::string joined_string(std::string_view quoted, std::string_view opening) {
     return any ? sum : std::string();
 }
 
+// `enum Kind { BALL, CUBE }`: each is a number.
+void Builder::enumeration(Index first) {
+    std::string written;
+    Index open = first + 1;
+    while (kind(open) == Tok::Name) lost_.push_back(open++);
+    const Index close = match(open);
+    bool plain = close > open && close < open + 100;
+    int number = 0;
+    for (Index i = open + 1; i < close; i += 2) {
+        plain =
+            plain && kind(i) == Tok::Name && is_one_of(kind(i + 1), {Tok::Comma, Tok::BraceClose});
+        if (kind(i) == Tok::Name) lost_.push_back(i);
+        written += (number > 0 ? "; let " : "let ") + std::string(text(i)) + " = " +
+                   std::to_string(number);
+        ++number;
+    }
+    foreign(span(first), "there are no enumerations")
+        .help(plain ? "write " + in_code(written) : "give each number a name of its own with `let`",
+              plain && number > 0 ? std::vector<Edit>{{span(first, close), written}}
+                                  : std::vector<Edit>{});
+}
+
+// Curv's `r :: slider[0, 2] = 1` as a `param`, and its last word; empty where it is none.
+std::string Builder::slider_text(Index name, Index &value) const {
+    const Index open = name + 4, close = match(open);
+    value = close + 2;
+    const bool plain = kind(name) == Tok::Name && kind(name + 1) == Tok::Colon &&
+                       kind(name + 2) == Tok::Colon && kind(open) == Tok::ListOpen &&
+                       close == open + 4 && kind(open + 2) == Tok::Comma &&
+                       kind(close + 1) == Tok::Assign && kind(value) == Tok::Number;
+    if (!plain) return {};
+    return "param " + std::string(text(name)) + " = " + std::string(text(value)) + " in " +
+           std::string(text(open + 1)) + ".." + std::string(text(open + 3));
+}
+
+// Curv's `parametric r :: slider[0, 2] = 1`, also with its names on lines of their own before `in`.
+bool Builder::curv_slider(Index first) {
+    const bool below = kind(first + 1) == Tok::End && text(first + 1) != ";";
+    std::vector<Edit> edits;
+    if (below) edits.push_back({span(first), ""});
+    std::string told;
+    Index i = below ? first + 2 : first + 1;
+    for (Index value = 0; kind(i) == Tok::Name;) {
+        const std::string written = slider_text(i, value);
+        if (written.empty()) return false;
+        if (told.empty()) told = written;
+        edits.push_back({span(below ? i : first, value), written});
+        lost_.push_back(i);
+        failed_ = value;
+        i = value + 1;
+        if (!below) break;
+        while (kind(i) == Tok::End && i < tokens_.tokens.size()) ++i;
+    }
+    if (told.empty()) return false;
+    if (below && kind(i) == Tok::In) {
+        edits.push_back({span(i), ""});
+        failed_ = i;
+    }
+    foreign(span(first), "a parameter is declared with `param`")
+        .help("write " + in_code(told), std::move(edits));
+    return true;
+}
+
+// Curv's `parametric` and `do`, alone on their lines.
+bool Builder::curv_block(Index first) {
+    if (kind(first + 1) != Tok::End || text(first + 1) == ";" || first + 1 >= tokens_.tokens.size())
+        return false;
+    if (text(first) == "parametric" && kind(first + 3) == Tok::Colon) return curv_slider(first);
+    const bool local = kind(first + 2) == Tok::Name && text(first + 2) == "local";
+    if (text(first) != "do" || !local || may_be_declared("do")) return false;
+    failed_ = first;
+    foreign(span(first), "statements follow each other, without `do`")
+        .help("leave it away", {{span(first), ""}});
+    return true;
+}
+
 // `a = 1, b = 2, c = 3`, from the first value on: what binds each of the others.
 std::vector<Edit> Builder::further_names(Index first, Index from) {
     std::vector<Edit> edits;

@@ -136,6 +136,7 @@ bool Builder::foreign_statement(Index first) {
                   {{{id_, token(first).begin, token(first + 2).begin}, ""}});
         return true;
     }
+    if (curv_block(first)) return true;
     const auto *row = std::ranges::find(statement_words, text(first), &ForeignWord::word);
     if (row == std::end(statement_words) || is_declared(std::string(text(first)))) return false;
     const Tok next = kind(first + 1);
@@ -188,28 +189,6 @@ bool Builder::may_be_declared(std::string_view name) {
         }
     }
     return has_import_ || all_declared_->contains(name) || is_declared(std::string(name));
-}
-
-// `enum Kind { BALL, CUBE }`: each is a number.
-void Builder::enumeration(Index first) {
-    std::string written;
-    Index open = first + 1;
-    while (kind(open) == Tok::Name) lost_.push_back(open++);
-    const Index close = match(open);
-    bool plain = close > open && close < open + 100;
-    int number = 0;
-    for (Index i = open + 1; i < close; i += 2) {
-        plain =
-            plain && kind(i) == Tok::Name && is_one_of(kind(i + 1), {Tok::Comma, Tok::BraceClose});
-        if (kind(i) == Tok::Name) lost_.push_back(i);
-        written += (number > 0 ? "; let " : "let ") + std::string(text(i)) + " = " +
-                   std::to_string(number);
-        ++number;
-    }
-    foreign(span(first), "there are no enumerations")
-        .help(plain ? "write " + in_code(written) : "give each number a name of its own with `let`",
-              plain && number > 0 ? std::vector<Edit>{{span(first, close), written}}
-                                  : std::vector<Edit>{});
 }
 
 // What was said of the strings in a statement that goes as a whole.

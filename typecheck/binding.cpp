@@ -112,10 +112,6 @@ static void report_missing(Interpreter &ev, std::string_view name, std::span<con
         formals, [](const Formal &f) { return !f.optional && !f.takes_rest; });
     if (required == 1 && formals.back().takes_rest && !args.empty() && args.back().trailing)
         d.help(fmt::format("write `{}(0.2) {{ … }}`", name));
-    if (name == "random" && args.empty() && call.source) {
-        const Span inside{call.source, call.end - 1, call.end - 1};
-        d.help("a random number belongs to a seed: `random(1)`", {{inside, "1"}});
-    }
     if (name == "range" && args.size() == 1) { // Python's
         const Span before{args[0].span.source, args[0].span.begin, args[0].span.begin};
         d.help("a range begins somewhere: `range(0, n)`, or `0..n`", {{before, "0, "}});
