@@ -3,6 +3,7 @@
 #include "proof/border_sides.h"
 
 #include "proof/continuity.h"
+#include "proof/exact.h"
 
 #include <algorithm>
 #include <array>
@@ -226,19 +227,23 @@ NodeId Border::unknown_of(NodeId step, int component, int depth) {
         it->second = rounds[graph[step].op] ? graph.make(Op::ToFloat, ir::Type::Float,
                                                          {graph.fresh_var(ir::Type::Int)})
                                             : graph.fresh_var(ir::Type::Float);
+        const bool sloped = graph[step].op != Op::Atan2 && ranges.is_sloped(args[0]) &&
+                            (graph[step].op != Op::Mod || graph.as_number(args[1]));
+        if (sloped) notes.sloped.insert(it->second);
         if (rounds[graph[step].op]) {
             const NodeId d = graph.fresh_var(ir::Type::Float); // ends included, where limits are
-            notes.ranges[d] = graph[step].op == Op::Round   ? Interval(-0.5, 0.5)
-                              : graph[step].op == Op::Floor ? Interval(-1, 0)
-                                                            : Interval(0, 1);
+            notes.given[d] = graph[step].op == Op::Round   ? Interval(-0.5, 0.5)
+                             : graph[step].op == Op::Floor ? Interval(-1, 0)
+                                                           : Interval(0, 1);
             notes.rounded[it->second] = graph.add(args[0], d);
+            if (sloped) notes.sloped.insert(d);
         }
         const auto width =
             graph[step].op == Op::Mod ? graph.as_number(args[1]) : std::optional(1.0);
         if (graph[step].op == Op::Atan2)
-            notes.ranges[it->second] = {-3.15, 3.15};
+            notes.given[it->second] = {-3.15, 3.15};
         else if (!rounds[graph[step].op] && width) // with both ends, where limits are
-            notes.ranges[it->second] = {std::min(*width, 0.0), std::max(*width, 0.0)};
+            notes.given[it->second] = {std::min(*width, 0.0), std::max(*width, 0.0)};
     }
     return offset != 0 ? graph.add(it->second, graph.number(offset)) : it->second;
 }
@@ -280,9 +285,8 @@ std::optional<NodeId> Border::parity_of(NodeId count, NodeId two) {
 }
 
 std::optional<NodeId> Border::cosine_of_half_turns(double a) {
-    constexpr double rounding = 1e-15;
-    const double turns = a / std::numbers::pi, n = std::round(turns);
-    if (n == 0 || std::fabs(turns - n) > rounding * std::fabs(n)) return {};
+    const double n = half_turns(a);
+    if (n == 0) return {};
     const auto odd = parity_of(graph.mul(graph.number(n), whole), graph.number(2));
     if (!odd) return {};
     return graph.sub(graph.number(1), graph.mul(graph.number(2), *odd));

@@ -4,6 +4,7 @@
 
 #include "ir/graph.h"
 #include "ir/interval.h"
+#include "proof/border_ranges.h"
 #include "proof/continuity.h"
 #include "proof/work.h"
 
@@ -102,21 +103,6 @@ struct Met {
     bool parity = false;
 };
 
-// What is known of ranges, on all sides alike.
-struct Notes {
-    std::map<NodeId, Interval> ranges;
-    std::map<NodeId, NodeId> rounded;         // of unknown whole numbers: t + d, t what was rounded
-    std::map<NodeId, std::vector<NodeId>> as; // what forms were before they were sums of products
-    void keep(NodeId form, NodeId made);
-};
-
-// What |x| is at least: the size of another number less a constant.
-struct Core {
-    NodeId of;
-    double off = 0;
-    bool turned = false; // has sines and cosines for factors
-};
-
 // One side of a group's borders, where what turns is K, or K + 1/2.
 struct Border {
     Graph &graph;
@@ -132,6 +118,7 @@ struct Border {
     Met &met;
     Work &work;
     Canonical limit{graph, this, false}, moving{graph, this, true};
+    SideRanges ranges{graph, notes, work};
 
     // What is known there of coordinates, and of the group's own arguments.
     void enter(Canonical &into, bool moves);
@@ -177,21 +164,6 @@ struct Border {
     // The sign of j K + n, where that is known of K.
     std::optional<int> sign_of_count(NodeId count);
     bool reads_little(NodeId id) const;
-    // What a scalar is between, made of numbers and unknown steps; nothing is known of the point.
-    Interval range_of(NodeId id) const;
-    Interval found_range(NodeId id) const;
-    Interval range_as_made(NodeId id) const;
-    Interval range_of_terms(const std::vector<Term> &terms) const;
-    Interval range_by_rounded(const std::vector<Term> &terms) const;
-    // Of turned and moved parts: lengths, and the greatest of several.
-    bool is_wave(NodeId factor) const; // a sine, a cosine, or the size of what has such
-    std::optional<Core> core_of(NodeId x, bool from_below, int depth = 0) const;
-    Interval range_by_cores(const std::vector<NodeId> &parts, bool greatest) const;
-    double size_of_terms(NodeId id) const; // the greatest number in a sum
-    // The first extreme's argument that is never beyond the other, but for rounding.
-    std::optional<NodeId> outermost(Op extreme, NodeId a, NodeId b) const;
-    // The limit that x is never within of, but for rounding, of min(max(x, least), most).
-    std::optional<NodeId> beyond(NodeId x, NodeId least, NodeId most) const;
 };
 
 } // namespace fathom::proof

@@ -96,7 +96,7 @@ std::optional<Sum> Cases::unknown(NodeId id, int i) {
     about.held = !read.point && !read.free_vars;
     const std::uint32_t a = atom_of(std::move(key), about);
     nodes_.try_emplace(a, id, i);
-    return atom(a);
+    return reduced(atom(a), case_);
 }
 
 bool Cases::are_opposite(NodeId a, NodeId b) const {

@@ -11,8 +11,10 @@
 #include "proof/discontinuities.h"
 
 #include "ir/passes/inline.h"
+#include "proof/agreement.h"
 #include "proof/border_sides.h"
 #include "proof/continuity.h"
+#include "proof/machine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,9 +41,16 @@ namespace {
 
 constexpr std::size_t max_groups = 48;
 
+// How sides are compared: with what is known where the field is asked, and case by case (agreement.h)
+// if there are `comparisons`.
+struct Way {
+    Notes notes{};
+    Comparisons *comparisons = nullptr;
+};
+
 // Is the field the same on all sides of the borders with these K?
 bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, const Counts &counts,
-             Met &met, Work &work) {
+             Met &met, const Way &way, Work &work) {
     const bool one = counts.range.is_point();
     const NodeId whole = one ? graph.number(counts.range.lo)
                              : graph.make(Op::ToFloat, ir::Type::Float,
@@ -50,7 +59,7 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
                  little_angle = graph.fresh_var(ir::Type::Float),
                  radius = graph.fresh_var(ir::Type::Float);
     std::map<std::vector<std::uint32_t>, NodeId> unknown;
-    Notes notes;
+    Notes notes = way.notes;
     std::vector<NodeId> sides;
     bool same_for_all = true;
     for (const Side side : {Side::Before, Side::At, Side::After}) {
@@ -60,9 +69,12 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
         border.enter(border.moving, true);
         sides.push_back(border.limit.of(seen.through));
         if (border.limit.failed || border.moving.failed) return false;
+        if (sides.size() == 3 && sides[1] == sides[2]) continue;
         same_for_all =
             same_for_all && (same(graph, sides.front(), sides.back(), &work) ||
-                             same_with_mixes_as_sums(graph, sides.front(), sides.back(), &work));
+                             same_with_mixes_as_sums(graph, sides.front(), sides.back(), &work) ||
+                             (way.comparisons && sides_agree(graph, sides.front(), sides.back(),
+                                                             notes, *way.comparisons, work)));
         if (!same_for_all && met.thresholds.empty() && !met.parity) return false;
     }
     return same_for_all;
@@ -71,7 +83,7 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
 // By cases for K: even and odd, and beside each number that it is compared with. `met` gets those
 // that it is compared with in some cases alone.
 bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool half, Met &met,
-                      Work &work) {
+                      const Way &way, Work &work) {
     constexpr std::size_t most_thresholds = 8;
     if (met.thresholds.empty() && !met.parity) return false;
     std::vector<double> whole;
@@ -93,7 +105,7 @@ bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool h
             const bool odd = std::fmod(std::fabs(range.lo), 2) == 1;
             if (range.is_point() && odd != (parity == 1)) continue;
             Met more;
-            if (cancels(graph, seen, group, half, {parity, range}, more, work)) continue;
+            if (cancels(graph, seen, group, half, {parity, range}, more, way, work)) continue;
             met.parity = met.parity || more.parity;
             for (double t : more.thresholds)
                 if (std::ranges::find(met.thresholds, t) == met.thresholds.end())
@@ -103,20 +115,20 @@ bool cancels_by_cases(Graph &graph, const Seen &seen, const Group &group, bool h
     return true;
 }
 
-bool cancels(Graph &graph, const Seen &seen, const Group &group, Work &work) {
+bool cancels(Graph &graph, const Seen &seen, const Group &group, const Way &way, Work &work) {
     constexpr int most_rounds = 3; // of cases that lead to further ones
     bool halves = false, wholes = false;
     for (NodeId step : group.steps) (graph[step].op == Op::Round ? halves : wholes) = true;
     for (const bool half : {false, true}) {
         if (half ? !halves : !wholes) continue;
         Met met;
-        bool known = cancels(graph, seen, group, half, {}, met, work);
+        bool is_proved = cancels(graph, seen, group, half, {}, met, way, work);
         std::size_t before = std::size_t(-1);
-        for (int i = 0; i < most_rounds && !known && met.thresholds.size() != before; ++i) {
+        for (int i = 0; i < most_rounds && !is_proved && met.thresholds.size() != before; ++i) {
             before = met.thresholds.size();
-            known = cancels_by_cases(graph, seen, group, half, met, work);
+            is_proved = cancels_by_cases(graph, seen, group, half, met, way, work);
         }
-        if (!known) return false;
+        if (!is_proved) return false;
     }
     return true;
 }
@@ -200,19 +212,47 @@ std::unordered_map<NodeId, NodeId> throughs(const Graph &graph, NodeId root,
 // The least expression that all uses of a group's steps go through, then larger ones, up to the
 // whole field.
 bool cancels_somewhere(Graph &graph, NodeId root, const Group &group,
-                       const std::unordered_map<NodeId, NodeId> &through, Work &work) {
+                       const std::unordered_map<NodeId, NodeId> &through, const Way &way,
+                       Work &work) {
     NodeId of = through.at(group.steps.front());
     for (NodeId step : group.steps) of = common_through(through, of, through.at(step));
     for (int climb = 1;; climb *= 2) {
-        if (cancels(graph, {of, through}, group, work)) return true;
+        if (cancels(graph, {of, through}, group, way, work)) return true;
         if (of == root || work.spent()) return false;
         for (int i = 0; i < climb; ++i) of = through.at(of);
     }
 }
 
+// Of coordinates: where the field is asked.
+Notes notes_of(Graph &graph, const Cell *region) {
+    Notes out;
+    for (const ir::Type type : {ir::Type::Vec2, ir::Type::Vec3})
+        for (int i = 0; region && i < ir::components(type); ++i)
+            if (const Interval side = region->p[std::size_t(i)]; side.finite())
+                out.given[graph.component(graph.point(type), i)] = side;
+    return out;
+}
+
+// Does a hash, or a sine, tell cells apart? Else no cases are needed, or none help.
+bool tells_cells_apart(const Graph &graph, const std::vector<NodeId> &nodes) {
+    constexpr ir::OpSet of_cells{Op::Hash, Op::Sin, Op::Cos};
+    return std::ranges::any_of(nodes, [&](NodeId id) {
+        return of_cells[graph[id].op] && graph.reads(id).point &&
+               std::ranges::none_of(graph.args(id),
+                                    [&](NodeId arg) { return reads_point_bare(graph, arg); });
+    });
+}
+
+bool is_about_an_angle(const Graph &graph, const Group &group) {
+    return group.is_angle ||
+           std::ranges::any_of(reached(graph, group.turning, false),
+                               [&](NodeId id) { return graph[id].op == Op::Atan2; });
+}
+
 } // namespace
 
-std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, Work &work) {
+std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, const Cell *region,
+                                            Work &work) {
     const std::vector<NodeId> nodes = reached(graph, root, false);
     if (nodes.size() > max_nodes) return {};
     std::map<std::pair<NodeId, int>, Group> groups;
@@ -239,9 +279,21 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, Work &wor
     }
     if (groups.size() > max_groups) return {};
     const std::unordered_map<NodeId, NodeId> through = throughs(graph, root, nodes);
+    const Way quickly;
+    std::vector<const Group *> left;
     for (const auto &[key, group] : groups)
-        if (!cancels_somewhere(graph, root, group, through, work))
-            for (NodeId step : group.steps) steps.erase(step);
+        if (!cancels_somewhere(graph, root, group, through, quickly, work)) left.push_back(&group);
+    const bool cases_may_help =
+        !left.empty() && tells_cells_apart(graph, nodes) &&
+        std::ranges::none_of(left, [&](auto *group) { return is_about_an_angle(graph, *group); });
+    Comparisons comparisons;
+    const Way by_cases{notes_of(graph, region), &comparisons};
+    for (const Group *group : left)
+        if (!cases_may_help || comparisons.in_vain ||
+            !cancels_somewhere(graph, root, *group, through, by_cases, work)) {
+            comparisons.in_vain = true; // the field jumps there, for all that is known
+            for (NodeId step : group->steps) steps.erase(step);
+        }
     for (NodeId id : nodes) // in a loop's body no border is entered
         if (graph[id].op == Op::Loop)
             for (NodeId inside : in_body(graph, id)) steps.erase(inside);

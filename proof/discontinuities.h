@@ -11,10 +11,13 @@
 
 namespace fathom::proof {
 
+struct Cell;
+
 // The steps (Floor, Ceil, Round, Fract, Mod, Atan2) below `root` whose jumps `root` is proved not
 // to see: it has one value on both sides of each border. Enters no loops; calls should have been
-// written out before (written_out).
-std::unordered_set<ir::NodeId> cancelling_steps(ir::Graph &graph, ir::NodeId root, Work &work);
+// written out before (written_out). Holds for the points of `region`, if one is given.
+std::unordered_set<ir::NodeId> cancelling_steps(ir::Graph &graph, ir::NodeId root,
+                                                const Cell *region, Work &work);
 
 // Does the expression, its calls included, hold such a step?
 bool has_steps(const ir::Graph &graph, ir::NodeId root);

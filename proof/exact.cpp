@@ -3,7 +3,9 @@
 #include "proof/continuity.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <unordered_set>
 
 namespace fathom::proof {
@@ -98,6 +100,30 @@ bool exactly_same(Graph &graph, NodeId a, NodeId b) {
             return false;
     }
     return true;
+}
+
+namespace {
+
+// n, where that many of `part` are the number in single precision, or all but what double precision
+// loses; 0 where there is no such n of few digits.
+double count_of(double part, double number) {
+    constexpr double few = 64, rounding = 1e-15;
+    const double n = std::round(number / part);
+    if (n == 0) return 0;
+    if (std::fabs(number / part - n) <= rounding * std::fabs(n)) return n;
+    return std::fabs(n) <= few && float(number) == float(n * part) ? n : 0;
+}
+
+} // namespace
+
+double half_turns(double angle) { return count_of(std::numbers::pi, angle); }
+
+std::optional<double> of_quarter_turns(bool cosine, double angle) {
+    const double n = count_of(std::numbers::pi / 2, angle);
+    if (n == 0) return {};
+    constexpr std::array<double, 4> sines{0, 1, 0, -1};
+    const double at = n + (cosine ? 1 : 0);
+    return sines[static_cast<std::size_t>(at - 4 * std::floor(at / 4))];
 }
 
 } // namespace fathom::proof

@@ -24,4 +24,10 @@ bool is_whole_power_of_two(const ir::Graph &graph, ir::NodeId id);
 // The same node, or the same exact number, by component.
 bool exactly_same(ir::Graph &graph, ir::NodeId a, ir::NodeId b);
 
+// The sine or cosine of so many quarters of a turn, where single precision has no other number for
+// that: pi is written with many digits or with few.
+std::optional<double> of_quarter_turns(bool cosine, double angle);
+// How many half turns an angle is, likewise; 0 where it is none.
+double half_turns(double angle);
+
 } // namespace fathom::proof

@@ -273,7 +273,7 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, const Tape &t
 
 double search_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,
                         const Domain &domain, const Budget &budget) {
-    Tape tape = flatten(context, scalar);
+    Tape tape = flatten(context, scalar, &domain.box);
     if (tape.too_large) return infinity;
     Machine machine(tape, ranges);
     machine.narrow_still();
@@ -355,7 +355,7 @@ double seen_once(Flattening &own, const Ranges &all, NodeId field, const Domain 
 // By all of the field, and where that is loose from coordinates that turn.
 FieldBound bound_of_all(Flattening &own, const Ranges &all, NodeId copy, const Domain &domain,
                         const Budget &budget) {
-    const Tape tape = flatten(own, copy);
+    const Tape tape = flatten(own, copy, &domain.box);
     if (budget.most == 0 || !holds_waves(tape)) return search_bound(own, all, tape, domain, budget);
     Budget first = budget;
     first.most = 0;

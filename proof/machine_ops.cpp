@@ -45,7 +45,7 @@ void Machine::step(const Instruction &instruction) {
     if (instruction.univariate) hold_univariate(instruction);
     if (instruction.stands_at) {
         value_[tape_.first[instruction.out]] = *instruction.stands_at;
-        relative_[instruction.out] = infinity; // it was that of another value
+        relative_[instruction.out] = ir::rounding::infinity; // it was that of another value
         raised_[instruction.out] = {};
     }
     if (reads_values_) {

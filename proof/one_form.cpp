@@ -92,6 +92,9 @@ NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
         if (auto w = whole(args[0])) return *w;
     if ((node.op == Op::Sin || node.op == Op::Cos) && node.type == ir::Type::Float) {
         if (const auto sum = turned(node.op, args[0])) return *sum;
+        if (const auto angle = graph.as_number(args[0]); angle && border)
+            if (const auto is = of_quarter_turns(node.op == Op::Cos, *angle))
+                return graph.number(*is);
         args[0] = without_iterations(graph, args[0]);
         // where an angle is cut, pi may have few digits
         const double nothing = border && border->group.is_angle ? 1e-9 : 1e-15;
@@ -250,15 +253,10 @@ std::optional<NodeId> Canonical::decided(const ir::Node &node, const std::vector
     if (node.op == Op::Select && graph.is_constant(args[0]))
         return args[graph.constant_of(args[0]).value[0] != 0 ? 1 : 2];
     if (border && node.type == ir::Type::Float) {
-        if (node.op == Op::Clamp) return border->beyond(args[0], args[1], args[2]);
+        if (node.op == Op::Clamp) return border->ranges.beyond(args[0], args[1], args[2]);
         if (node.op == Op::Smoothstep) {
-            for (const bool rises : {true, false}) {
-                const NodeId least = args[rises ? 0 : 1], most = args[rises ? 1 : 0];
-                if (!(border->range_of(least).hi < border->range_of(most).lo)) continue;
-                if (border->outermost(Op::Min, args[2], most) == most) return graph.number(rises);
-                if (border->outermost(Op::Max, args[2], least) == least)
-                    return graph.number(!rises);
-            }
+            if (const auto end = border->ranges.faded(args[0], args[1], args[2]))
+                return graph.number(*end);
             return {};
         }
     }
@@ -268,7 +266,7 @@ std::optional<NodeId> Canonical::decided(const ir::Node &node, const std::vector
     const auto number = [&](NodeId id) { return type == ir::Type::Int ? as_float(id) : id; };
     const auto sign = border->sign_of_count(graph.sub(number(args[0]), number(args[1])));
     if (!sign && extremes[node.op] && type == ir::Type::Float)
-        return border->outermost(node.op, args[0], args[1]);
+        return border->ranges.outermost(node.op, args[0], args[1]);
     if (!sign) return {};
     if (node.op == Op::Min) return args[*sign <= 0 ? 0 : 1];
     if (node.op == Op::Max) return args[*sign >= 0 ? 0 : 1];

@@ -17,11 +17,11 @@ using ir::NodeId;
 using ir::Op;
 
 // The factors of a product, numbers apart; of x/n, x and 1/n.
-struct Product {
+struct Factored {
     double number = 1;
     std::vector<NodeId> factors;
 };
-void gather(Graph &graph, NodeId id, Product &out) {
+void gather(Graph &graph, NodeId id, Factored &out) {
     constexpr std::size_t most = 32; // a factor may stand in both parts of another, again and again
     const ir::Node node = graph[id];
     if (out.factors.size() >= most) {
@@ -49,7 +49,7 @@ void gather(Graph &graph, NodeId id, Product &out) {
     }
 }
 // Takes one factor that equals `what` out; false where there is none.
-bool take(Graph &graph, Product &product, NodeId what) {
+bool take(Graph &graph, Factored &product, NodeId what) {
     for (auto it = product.factors.begin(); it != product.factors.end(); ++it)
         if (same(graph, *it, what)) {
             product.factors.erase(it);
@@ -58,20 +58,20 @@ bool take(Graph &graph, Product &product, NodeId what) {
     return false;
 }
 // x and 1/x leave each other.
-void cancel(Graph &graph, Product &product) {
+void cancel(Graph &graph, Factored &product) {
     for (bool again = true; again;) {
         again = false;
         for (std::size_t i = 0; i < product.factors.size() && !again; ++i) {
             const NodeId f = product.factors[i];
             if (graph[f].op != Op::Div || graph.as_number(graph.arg(f, 0)) != 1.0) continue;
-            Product rest = product;
+            Factored rest = product;
             rest.factors.erase(rest.factors.begin() + static_cast<std::ptrdiff_t>(i));
             again = take(graph, rest, graph.arg(f, 1));
             if (again) product = rest;
         }
     }
 }
-NodeId value(Graph &graph, const Product &product, double by) {
+NodeId value(Graph &graph, const Factored &product, double by) {
     NodeId out = graph.number(product.number * by);
     for (NodeId f : product.factors) out = graph.mul(out, f);
     return out;
@@ -86,12 +86,12 @@ std::optional<NodeId> above_zero(const Graph &graph, NodeId id) {
 }
 
 // mix(y, x, h) - bulge
-std::optional<Smooth> by_mix(Graph &graph, NodeId mix, const Product &bulge) {
+std::optional<Smooth> by_mix(Graph &graph, NodeId mix, const Factored &bulge) {
     const NodeId y = graph.arg(mix, 0), x = graph.arg(mix, 1), h = graph.arg(mix, 2);
     if (graph[h].op != Op::Clamp || graph.as_number(graph.arg(h, 1)) != 0.0 ||
         graph.as_number(graph.arg(h, 2)) != 1.0)
         return {};
-    Product rest = bulge;
+    Factored rest = bulge;
     if (!take(graph, rest, h) || !take(graph, rest, graph.sub(graph.number(1), h))) return {};
     const NodeId k = value(graph, rest, 1), half = graph.number(0.5), way = graph.sub(y, x);
     for (NodeId slope : {graph.div(graph.mul(half, way), k), graph.mul(half, graph.div(way, k)),
@@ -102,9 +102,9 @@ std::optional<Smooth> by_mix(Graph &graph, NodeId mix, const Product &bulge) {
 }
 
 // min(x, y) - h h c, or with the greater
-std::optional<Smooth> by_least(Graph &graph, NodeId extremum, const Product &bulge) {
+std::optional<Smooth> by_least(Graph &graph, NodeId extremum, const Factored &bulge) {
     const NodeId x = graph.arg(extremum, 0), y = graph.arg(extremum, 1);
-    Product rest = bulge;
+    Factored rest = bulge;
     NodeId h;
     for (NodeId f : rest.factors)
         if (above_zero(graph, f)) h = f;
@@ -116,7 +116,7 @@ std::optional<Smooth> by_least(Graph &graph, NodeId extremum, const Product &bul
         const NodeId size = graph.make(Op::Abs, {way});
         const NodeId k = in_one_form(graph, graph.add(inner, size));
         if (graph.reads(k).point) continue;
-        Product by = rest;
+        Factored by = rest;
         by.number *= cubic ? 6 : 4;
         gather(graph, k, by);
         if (cubic) gather(graph, k, by);
@@ -128,7 +128,7 @@ std::optional<Smooth> by_least(Graph &graph, NodeId extremum, const Product &bul
         // where tiny is a number above 0
         for (NodeId f : rest.factors) {
             if (rest.factors.size() != 1 || rest.number != 1 || graph[f].op != Op::Div) continue;
-            Product below;
+            Factored below;
             gather(graph, graph.arg(f, 1), below);
             if (below.number != 4 || below.factors.size() != 1) continue;
             const NodeId most = below.factors[0];
@@ -150,7 +150,7 @@ std::optional<Smooth> smooth_extremum(Graph &graph, NodeId sum) {
     if ((node.op != Op::Add && node.op != Op::Sub) || node.type != ir::Type::Float) return {};
     for (int i = 0; i < (node.op == Op::Add ? 2 : 1); ++i) {
         const NodeId from = graph.arg(sum, i), less = graph.arg(sum, 1 - i);
-        Product bulge;
+        Factored bulge;
         gather(graph, less, bulge);
         if (node.op == Op::Add) bulge.number = -bulge.number;
         const Op op = graph[from].op;

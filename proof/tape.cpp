@@ -305,7 +305,7 @@ std::unordered_set<NodeId> all_nodes_of(const ir::Graph &graph, NodeId root) {
     return seen;
 }
 
-Tape flattened(Flattening &context, NodeId root, bool unwound) {
+Tape flattened(Flattening &context, NodeId root, bool unwound, const Cell *region) {
     Flattener flattener(context);
     if (const auto it = context.written.find(root); it != context.written.end()) root = it->second;
     root = written_out(context.graph, root); // forms are seen through calls
@@ -319,7 +319,7 @@ Tape flattened(Flattening &context, NodeId root, bool unwound) {
         const bool has_signed_roots = whole != root;
         flattener.own = all_nodes_of(context.graph, whole);
         if (steps) {
-            flattener.cancelling = cancelling_steps(context.graph, whole, context.work);
+            flattener.cancelling = cancelling_steps(context.graph, whole, region, context.work);
             const Turned turned = without_angles(context.graph, whole);
             for (const auto &[wave, step] : turned.steps) flattener.cancel_like(wave, step);
             whole = turned.root;
@@ -345,7 +345,11 @@ Tape flattened(Flattening &context, NodeId root, bool unwound) {
 
 } // namespace
 
-Tape flatten(Flattening &context, NodeId root) { return flattened(context, root, false); }
-Tape flatten_unwound(Flattening &context, NodeId root) { return flattened(context, root, true); }
+Tape flatten(Flattening &context, NodeId root, const Cell *region) {
+    return flattened(context, root, false, region);
+}
+Tape flatten_unwound(Flattening &context, NodeId root) {
+    return flattened(context, root, true, nullptr);
+}
 
 } // namespace fathom::proof

@@ -19,4 +19,20 @@ struct Work {
     }
 };
 
+// What comparisons of a border's sides by cases may take (agreement.h): each, and those of one field
+// together. They count as work of the proof, too.
+struct Comparisons {
+    static constexpr std::size_t most_of_one = 2'500'000;
+    std::size_t left = 5'000'000; // of a field
+    bool in_vain = false;         // a step of the field is seen: no further one is worth it
+
+    Work begin(const Work &all) const {
+        return {std::min({most_of_one, left, all.left}), all.stop};
+    }
+    void end(Work &all, std::size_t steps) {
+        left -= std::min(left, steps);
+        all.take(steps);
+    }
+};
+
 } // namespace fathom::proof
