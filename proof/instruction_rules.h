@@ -111,10 +111,6 @@ struct Step {
 
     // -- what mixes components (machine_vectors.cpp)
     double together() const;
-    // Do two arguments depend on coordinates that are at right angles (supports.h)?
-    bool in_other_group(int a, int b) const {
-        return (in.groups >> (2 * a) & 3) != (in.groups >> (2 * b) & 3);
-    }
     void splat();
     void make();
     void swizzle();
@@ -146,15 +142,6 @@ struct Step {
     }
     int size(int arg) const {
         return int(machine.tape_.size[in.args[static_cast<std::size_t>(arg)]]);
-    }
-    // The axes along which an argument may change, a bit for each. Where they are other ones for A
-    // than for B, |(A + B) v| <= hypot(|A|, |B|) |v|, as each reads a part of v of its own.
-    unsigned axes(int arg) const {
-        unsigned bits = 0;
-        for (int c = 0; c < size(arg); ++c)
-            for (unsigned j = 0; j < 3; ++j)
-                if (grad(arg, c)[j] != Interval(0.0)) bits |= 1u << j;
-        return bits;
     }
     double norm(int arg) const { return machine.norm_[in.args[static_cast<std::size_t>(arg)]]; }
     void set(int c, Interval v, const Row &g, bool is_odd = false) {

@@ -176,6 +176,8 @@ class Machine {
     std::uint32_t origin(Slot s, int component) const;
     double component_norm(Slot s, int component) const;
     double relative_norm(const Instruction &instruction) const;
+    unsigned axes(Slot s) const;
+    bool at_right_angles(const Instruction &in, int a, int b) const;
     struct Monomial { // by of^degree
         Interval by;
         Slot of;

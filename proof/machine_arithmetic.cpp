@@ -28,10 +28,10 @@ void Step::add() {
         odd_used = odd_used || (!stays && (odd(0, c) || odd(1, c)));
         set(c, value(0, c) + sign * value(1, c), sum(grad(0, c), scaled(sign, grad(1, c))), stays);
     }
-    finish(norm(0) == 0                                       ? norm(1)
-           : norm(1) == 0                                     ? norm(0)
-           : (axes(0) & axes(1)) == 0 || in_other_group(1, 0) ? up(std::hypot(norm(0), norm(1)), 4)
-                                                              : up(norm(0) + norm(1)),
+    finish(norm(0) == 0                        ? norm(1)
+           : norm(1) == 0                      ? norm(0)
+           : machine.at_right_angles(in, 0, 1) ? up(std::hypot(norm(0), norm(1)), 4)
+                                               : up(norm(0) + norm(1)),
            odd_used);
     if (machine.norm_[out] != infinity)
         machine.cause_[out] =

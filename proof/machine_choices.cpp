@@ -1,5 +1,6 @@
 // What chooses: least and greatest, means, steps, comparisons, `if`. Proofs: docs/lipschitz.md, 2.
 #include "proof/instruction_rules.h"
+#include "proof/supports.h"
 
 #include <algorithm>
 #include <cmath>
@@ -130,7 +131,7 @@ void Step::mixed() {
     m = up(m * (1 + 4 * rounded));
     const double turning = times(gap, norm(2));
     // the weight's gradient is at right angles to both others (supports.h)
-    const bool apart = n == 1 && in_other_group(2, 0) && in_other_group(2, 1);
+    const bool apart = n == 1 && in_other_group(in, 2, 0) && in_other_group(in, 2, 1);
     finish(apart ? up(std::hypot(m, turning), 4) : up(m + turning), any_odd);
 }
 

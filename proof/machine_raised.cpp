@@ -157,8 +157,7 @@ Raised Machine::raised(const Instruction &instruction) const {
         const double q = x.power, most = std::max(x.slope, y.slope);
         if (q == infinity) return {most, q, base, x.negative};
         const double sum = std::pow(x.slope, q) + std::pow(y.slope, q);
-        const Step step(const_cast<Machine &>(*this), instruction);
-        const bool apart = (step.axes(0) & step.axes(1)) == 0 || step.in_other_group(1, 0);
+        const bool apart = at_right_angles(instruction, 0, 1);
         return {apart && q == 2 ? most : root_of(up(sum, 16), q), q, base, x.negative};
     }
     if (op == Op::Mul || op == Op::Div) {

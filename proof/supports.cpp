@@ -3,6 +3,8 @@
 // Jacobian whose norm is the greatest |s g_i|, the greatest norm of a part alone.
 #include "proof/supports.h"
 
+#include "proof/machine.h"
+
 #include <algorithm>
 
 namespace fathom::proof {
@@ -106,6 +108,22 @@ std::uint32_t Supports::groups(const std::vector<Slot> &args) const {
         out |= name << (2 * i);
     }
     return out;
+}
+
+// The axes along which a value may change, a bit for each.
+unsigned Machine::axes(Slot s) const {
+    unsigned bits = 0;
+    for (std::uint32_t c = 0; c < tape_.size[s]; ++c)
+        for (unsigned j = 0; j < 3; ++j)
+            if (grad_[tape_.first[s] + c][j] != Interval(0.0)) bits |= 1u << j;
+    return bits;
+}
+
+// Where two arguments change along other axes, |(A + B) v| <= hypot(|A|, |B|) |v|, as each reads a
+// part of v of its own; and where they read other coordinates of a vector like the point.
+bool Machine::at_right_angles(const Instruction &in, int a, int b) const {
+    return (axes(in.args[std::size_t(a)]) & axes(in.args[std::size_t(b)])) == 0 ||
+           in_other_group(in, a, b);
 }
 
 } // namespace fathom::proof

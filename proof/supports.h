@@ -37,4 +37,9 @@ class Supports {
     std::vector<Support> known_; // by component of the tape
 };
 
+// Do two arguments of an instruction depend on different coordinates, by Supports::groups?
+inline bool in_other_group(const Instruction &in, int a, int b) {
+    return (in.groups >> (2 * a) & 3) != (in.groups >> (2 * b) & 3);
+}
+
 } // namespace fathom::proof
