@@ -52,13 +52,17 @@ std::array<double, 3> beside_middle(const Cell &cell) {
     return out;
 }
 
+// The axis along which a cell is cut: of those along which it is endless the one that begins nearest
+// to 0, so that all of them are far from it some time.
 double widest(const Cell &cell, const std::array<bool, 3> &reads, int *axis) {
-    double most = -1;
+    double most = -1, begins = infinity;
     for (int i = 0; i < 3; ++i) {
         auto k = static_cast<std::size_t>(i);
         if (!reads[k]) continue;
-        double w = cell.p[k].hi - cell.p[k].lo;
-        if (w > most) most = w, *axis = i;
+        const double w = cell.p[k].hi - cell.p[k].lo;
+        const bool straddles = cell.p[k].lo < 0 && cell.p[k].hi > 0;
+        const double from = straddles ? -1 : cell.p[k].mignitude();
+        if (w > most || (w == infinity && from < begins)) most = w, *axis = i, begins = from;
     }
     return most;
 }
@@ -237,7 +241,7 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, const Tape &t
             out.value = Interval::everything();
             return out;
         }
-        if (width <= 1e-9 * size) {
+        if (width <= 1e-9 * size || (endless && top.depth > 60)) { // no further out is it flatter
             settled = std::max(settled, top.bound);
             settled_value = hull(settled_value, value);
             continue;

@@ -161,6 +161,10 @@ void Machine::reach(const Cell &cell) {
     in_reach_ = tape_.grows && std::all_of(cell.p.begin(), cell.p.end(), [](const Interval &x) {
                     return x.magnitude() <= in_reach;
                 });
+    far_out_ = FarOut(cell.p);
+    if (!far_out_.holds()) return;
+    far_.resize(tape_.components);
+    is_far_.assign(tape_.components, 0);
 }
 
 void Machine::run(const Cell &cell) {
@@ -216,6 +220,7 @@ void Machine::copy(Slot from, Slot to) {
         value_[b + i] = value_[a + i];
         grad_[b + i] = grad_[a + i];
         odd_[b + i] = odd_[a + i];
+        if (far_out_.holds()) far_[b + i] = far_[a + i], is_far_[b + i] = is_far_[a + i];
     }
     norm_[to] = norm_[from];
     relative_[to] = relative_[from];
@@ -232,6 +237,7 @@ void Machine::join(Slot into, Slot other, bool jump, NodeId cause) {
     for (std::uint32_t i = 0; i < tape_.size[into]; ++i) {
         value_[a + i] = hull(value_[a + i], value_[b + i]);
         odd_[a + i] = odd_[a + i] | odd_[b + i];
+        if (far_out_.holds()) is_far_[a + i] = 0;
         for (std::size_t j = 0; j < 3; ++j)
             grad_[a + i][j] = hull(grad_[a + i][j], grad_[b + i][j]);
     }

@@ -7,6 +7,7 @@
 
 #include "base/ids.h"
 #include "ir/scene.h"
+#include "proof/growth.h"
 #include "proof/tape.h"
 #include "proof/ways.h"
 
@@ -138,7 +139,8 @@ class Machine {
 
   private:
     static constexpr double infinity_ = ir::rounding::infinity;
-    friend struct Step; // the rules of one instruction (instruction_rules.h)
+    friend struct Step;    // the rules of one instruction (instruction_rules.h)
+    friend struct FarStep; // … and in endless cells (machine_far.cpp)
     void run(const std::vector<Instruction> &block);
     void conclude();
     bool is_one_value(Slot s) const;
@@ -192,6 +194,10 @@ class Machine {
     double norm_of_inverse(Slot s, double e) const;
     double norm_by_raised(const Instruction &instruction) const;
     void hold_raised(const Instruction &instruction);
+    Far far(Slot s, int component) const;
+    void keep_far(Slot s, int component, Far found);
+    bool is_regular(const Instruction &instruction) const;
+    void hold_far(const Instruction &instruction);
     std::optional<std::pair<std::uint32_t, std::uint32_t>> difference(Slot s, int c) const;
 
     const Tape &tape_;
@@ -209,7 +215,10 @@ class Machine {
     std::vector<double> norm_;      // by slot
     std::vector<double> relative_;  // by slot: of a scalar v >= 0, what |grad v| is at most, of v
     std::vector<Raised> raised_;    // by slot
-    std::vector<double> bend_;      // by slot, or none
+    FarOut far_out_;                // of an endless cell
+    std::vector<Far> far_;          // by component, where `is_far_`
+    std::vector<std::uint8_t> is_far_;
+    std::vector<double> bend_; // by slot, or none
     std::vector<Trouble> trouble_;
     std::vector<NodeId> cause_;
     std::vector<std::uint8_t> pole_; // by slot: singular as it may be no number at all

@@ -359,7 +359,7 @@ void Step::smoothstep() {
                                  t.contains(0.5) ? 1.5 : std::max(slope(t.lo), slope(t.hi)), 4);
         if (whole.hi < 0 || whole.lo > 1) d = 0.0;
         d = Interval(std::max(d.lo, 0.0), d.hi);
-        Interval k = d / width;
+        const Interval k = d == Interval(0.0) ? d : d / width;
         Row inner =
             sum(grad(2, c), sum(scaled(t - Interval(1.0), grad(0, c)), scaled(-t, grad(1, c))));
         most = std::max(most, k.magnitude());

@@ -49,8 +49,15 @@ void Machine::hold_turning(const Instruction &instruction) {
         if (is_point) taken |= 1u << (coordinate_[at] - 1);
     }
     const double arm = length_of(is_point ? taken : 0, sqrt(sum)).hi;
-    const double turns = up(times(times(by, norm_[angle]), arm), 8),
-                 moves = up(times(norm, norm_[vector]), 4);
+    double turns = up(times(norm_[angle], arm), 4);
+    if (far_out_.holds()) { // an arm that grows, and an angle that falls
+        Growth arms{0};
+        for (std::uint32_t c = 0; c < tape_.size[vector]; ++c)
+            if (moving >> c & 1) arms = far_out_.sum(arms, far(vector, int(c)).most);
+        turns = std::min(turns, far_out_.most(product(arms, far(angle, 0).slope, true)));
+    }
+    turns = up(times(by, turns), 4);
+    const double moves = up(times(norm, norm_[vector]), 4);
     double most = moves + turns;
     if (way == Way::Apart) most = std::hypot(moves, turns);
     if (way == Way::Shear) most = (turns + std::hypot(turns, 2 * moves)) / 2;

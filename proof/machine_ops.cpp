@@ -36,6 +36,7 @@ Step::Step(Machine &of, const Instruction &instruction)
 void Machine::step(const Instruction &instruction) {
     Step step(*this, instruction);
     step.run();
+    if (far_out_.holds()) hold_far(instruction);
     hold_raised(instruction);
     if (instruction.turning) hold_turning(instruction);
     if (instruction.mean) hold_mean(instruction);
