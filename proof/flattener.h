@@ -100,6 +100,9 @@ struct Flattener {
 
     Slot vector(Scope &scope, NodeId id, Instruction out);
 
+    // acos(v.y / length(v))
+    Slot inverse_cosine(Scope &scope, NodeId id, Instruction out);
+
     // A choice of vectors as a vector of choices, where components differ.
     NodeId by_component(const std::vector<NodeId> &choice);
 

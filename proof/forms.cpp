@@ -204,7 +204,19 @@ PowerOf power_of(Graph &graph, NodeId id, int depth = 0) {
         }
     if (node.op == Op::Swizzle && node.type == ir::Type::Float)
         if (const NodeId own = component_of(graph, id, 0); own != id) return of(own);
+    if (node.op == Op::Abs) { // |x^n| = |x|^n
+        const PowerOf inner = of(graph.arg(id, 0));
+        const bool size = graph[inner.base].op == Op::Abs;
+        if (inner.exponent > 1)
+            return {size ? inner.base : graph.make(Op::Abs, {inner.base}), inner.exponent};
+    }
     return {id, 1};
+}
+
+bool is_1(Graph &graph, NodeId vector) {
+    for (int c = 0; c < ir::components(graph[vector].type); ++c)
+        if (number(graph, component_of(graph, vector, c)) != 1.0) return false;
+    return true;
 }
 
 bool powers(Graph &graph, NodeId sum, std::vector<PowerOf> &out, int depth = 0) {
@@ -220,6 +232,12 @@ bool powers(Graph &graph, NodeId sum, std::vector<PowerOf> &out, int depth = 0) 
         }
         return true;
     }
+    for (int i = 0; i < 2 && node.op == Op::Dot; ++i) // of 1, 1, …: the sum of all components
+        if (const NodeId v = graph.arg(sum, 1 - i); is_1(graph, graph.arg(sum, i))) {
+            for (int c = 0; c < ir::components(graph[v].type); ++c)
+                out.push_back(power_of(graph, component_of(graph, v, c), depth));
+            return true;
+        }
     out.push_back(power_of(graph, sum, depth));
     return out.size() <= 15;
 }

@@ -118,6 +118,27 @@ void Machine::hold_along(const Instruction &instruction) {
     hold_norm(out, up(times(by, norm_[vector]), 4));
 }
 
+// The angle between a vector and an axis turns as the vector does, by |J|/|v| at most: also on the
+// axis, where its cosine's inverse is infinitely steep (2.35).
+void Machine::hold_angle(const Instruction &instruction) {
+    const Slot out = instruction.out, ratio = instruction.args[0];
+    const auto [v, length] = *instruction.from_axis;
+    if (norm_[v] == infinity || pole_[ratio] || odd_[tape_.first[ratio]]) return;
+    for (std::uint32_t i = 0; i < tape_.size[v]; ++i)
+        if (odd_[tape_.first[v] + i]) return;
+    const double away = value(length, 0).lo;
+    if (!(away >= ir::rounding::min_single)) return;
+    const double most = up(norm_[v] / away, 4);
+    if (!(most < norm_[out]) || trouble_[out] == Trouble::Overflow) return;
+    trouble_[out] = Trouble::None;
+    cause_[out] = NodeId();
+    hold_norm(out, most);
+    if (!far_out_.holds()) return;
+    Far known = far(out, 0);
+    known.slope = over({norm_[v]}, far(length, 0).least);
+    keep_far(out, 0, known);
+}
+
 namespace {
 
 // Of a polynomial, the lowest power first, and of its derivative over an interval: by Horner's rule

@@ -68,6 +68,7 @@ void Machine::need_args(const Instruction &in, std::vector<bool> &wanted) const 
         wanted[in.around->vanishing] = wanted[in.around->rest] = true;
     if (in.along) wanted[in.along->vector] = wanted[in.along->factor] = true;
     if (in.univariate) wanted[in.univariate->of] = true;
+    if (in.from_axis) wanted[in.from_axis->vector] = wanted[in.from_axis->length] = true;
     if (in.between) {
         wanted[in.between->vector] = true;
         for (const Slot s : in.between->corners) wanted[s] = true;

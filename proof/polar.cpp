@@ -187,4 +187,26 @@ std::unordered_set<NodeId> stepped_angles(const Graph &graph, NodeId root,
     return out;
 }
 
+std::optional<NodeId> angle_to_axis(Graph &graph, NodeId angle) {
+    NodeId ratio = graph.arg(angle, 0);
+    if (graph[angle].type != ir::Type::Float) return {};
+    const auto is = [&](NodeId id, double x) { return graph.as_number(id) == x; };
+    for (int depth = 0; depth < 4; ++depth) { // kept in -1..1, where it is
+        const ir::Node node = graph[ratio];
+        const bool kept =
+            (node.op == Op::Clamp && is(graph.arg(ratio, 1), -1) && is(graph.arg(ratio, 2), 1)) ||
+            (node.op == Op::Min && is(graph.arg(ratio, 1), 1)) ||
+            (node.op == Op::Max && is(graph.arg(ratio, 1), -1));
+        if (!kept) break;
+        ratio = graph.arg(ratio, 0);
+    }
+    if (graph[ratio].op != Op::Div) return {};
+    const NodeId part = graph.arg(ratio, 0), length = graph.arg(ratio, 1);
+    if (graph[length].op != Op::Length) return {};
+    const NodeId v = graph.arg(length, 0);
+    for (int c = 0; c < ir::components(graph[v].type); ++c)
+        if (component_of(graph, v, c) == part || graph.component(v, c) == part) return length;
+    return {};
+}
+
 } // namespace fathom::proof

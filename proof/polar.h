@@ -22,4 +22,8 @@ Turned without_angles(ir::Graph &graph, ir::NodeId root);
 std::unordered_set<ir::NodeId> stepped_angles(const ir::Graph &graph, ir::NodeId root,
                                               const std::unordered_set<ir::NodeId> &steps);
 
+// |v| of acos(v.y / |v|), which is the angle between v and an axis, or of asin(v.y / |v|), 90 degrees
+// less that (docs/lipschitz.md, 2.35); nothing where it is no such.
+std::optional<ir::NodeId> angle_to_axis(ir::Graph &graph, ir::NodeId angle);
+
 } // namespace fathom::proof

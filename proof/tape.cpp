@@ -34,6 +34,7 @@ enum class Look : std::uint8_t {
     Product,
     Quotient,
     Vector,
+    Angle,
     Choice,
 };
 constexpr ir::OpTable<Look> look_of_op{
@@ -52,6 +53,8 @@ constexpr ir::OpTable<Look> look_of_op{
     {Op::Div, Look::Quotient},
     {Op::Make, Look::Vector},
     {Op::MatMul, Look::Vector},
+    {Op::Acos, Look::Angle},
+    {Op::Asin, Look::Angle},
     {Op::Select, Look::Choice},
 };
 
@@ -209,6 +212,7 @@ Slot Flattener::flatten_node(Scope &scope, NodeId id) {
     case Look::Product: return product(scope, id, std::move(out));
     case Look::Quotient: return quotient(scope, id, std::move(out));
     case Look::Vector: return vector(scope, id, std::move(out));
+    case Look::Angle: return inverse_cosine(scope, id, std::move(out));
     case Look::Choice: return choice(scope, id, std::move(out));
     case Look::Plain: break;
     }

@@ -111,7 +111,11 @@ struct Instruction {
         std::vector<double> by;
     };
     std::optional<Univariate> univariate;
-    std::optional<double> stands_at; // its value, whatever the argument's: an angle's (winding.h)
+    struct FromAxis {
+        Slot vector = 0, length = 0;
+    };
+    std::optional<FromAxis> from_axis; // of the angle between a vector and an axis (polar.h)
+    std::optional<double> stands_at;   // its value, whatever the argument's: an angle's (winding.h)
     NodeId node;
 };
 

@@ -10,6 +10,7 @@
 #include "proof/interpolation.h"
 #include "proof/linear_maps.h"
 #include "proof/means.h"
+#include "proof/polar.h"
 #include "proof/radial.h"
 #include "proof/segments.h"
 #include "proof/smooth.h"
@@ -332,6 +333,12 @@ Slot Flattener::vector(Scope &scope, NodeId id, Instruction out) {
                 out.norm = matrix_norm(graph, m).value_or(out.norm);
     for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
     return emit_turned(scope, id, std::move(out));
+}
+
+Slot Flattener::inverse_cosine(Scope &scope, NodeId id, Instruction out) {
+    if (const auto length = angle_to_axis(graph, id))
+        out.from_axis = {slot(scope, graph.arg(*length, 0)), slot(scope, *length)};
+    return emit_plain(scope, id, std::move(out));
 }
 
 NodeId Flattener::by_component(const std::vector<NodeId> &choice) {
