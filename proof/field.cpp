@@ -157,7 +157,27 @@ bool keep_half(const Tape &tape, Cell &whole, const Zone *zone) {
     return negated;
 }
 
-FieldBound search_bound(Flattening &context, const Ranges &ranges, const Tape &tape,
+// May products leave single precision where rays go, of a field without powers and exponentials? In
+// regions they are taken as they are.
+bool products_overflow(const Tape &tape, const Ranges &ranges, const Domain &domain) {
+    if (tape.grows || tape.too_large) return false;
+    Cell near = domain.box;
+    for (Interval &x : near.p) x = meet(x, Interval(-in_reach, in_reach));
+    if (near.p == domain.box.p) return false;
+    Machine machine(tape, ranges);
+    machine.run(near);
+    return machine.leaves_single();
+}
+
+// Those along which a field is as steep all along are of no use.
+std::array<bool, 3> axes_to_cut(const Periods &periods, const Cell &whole, const Tape &tape) {
+    std::array<bool, 3> cuts = periods.reads;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (periods.linear[i] && !whole.p[i].finite() && !tape.near) cuts[i] = false;
+    return cuts;
+}
+
+FieldBound search_cells(Flattening &context, const Ranges &ranges, const Tape &tape,
                         const Domain &domain, const Budget &budget) {
     FieldBound out;
     if (tape.too_large) {
@@ -172,6 +192,7 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, const Tape &t
     Cell whole = domain.box;
     const std::array<bool, 3> shifted = to_one_period(periods, whole);
     const bool reduced = shifted[0] || shifted[1] || shifted[2];
+    const std::array<bool, 3> cuts = axes_to_cut(periods, whole, tape);
     const std::optional<Zone> along =
         reduced && domain.zone ? zone_along(*domain.zone, shifted) : std::nullopt;
     const Zone *zone = !reduced ? domain.zone : along ? &*along : nullptr;
@@ -220,7 +241,7 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, const Tape &t
         queue.pop();
         const auto [cell, value] = cells[top.at];
         int axis = 0;
-        double width = widest(cell, periods.reads, &axis);
+        double width = widest(cell, cuts, &axis);
         auto k = static_cast<std::size_t>(axis);
         std::array<double, 3> centre = middle(cell);
         double size =
@@ -273,6 +294,15 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, const Tape &t
     if (negated) out.value = hull(out.value, -out.value);
     out.sampled = std::min(out.sampled, out.lipschitz);
     return out;
+}
+
+FieldBound search_bound(Flattening &context, const Ranges &ranges, const Tape &tape,
+                        const Domain &domain, const Budget &budget) {
+    if (!products_overflow(tape, ranges, domain))
+        return search_cells(context, ranges, tape, domain, budget);
+    Tape growing = tape;
+    growing.grows = true;
+    return search_cells(context, ranges, growing, domain, budget);
 }
 
 double search_magnitude(Flattening &context, const Ranges &ranges, NodeId scalar,

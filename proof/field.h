@@ -63,10 +63,11 @@ std::array<Interval, 16> range_of(Flattening &context, const Ranges &ranges, Nod
                                   const Cell &cell = {});
 
 // The axis' smallest known period of a field, 0 where it is not known to have one; `reads` is false
-// where the field does not depend on that coordinate at all.
+// where the field does not depend on that coordinate at all, and `linear` where it is a multiple of it
+// besides what does not, and so as steep wherever that coordinate is.
 struct Periods {
     std::array<double, 3> period{};
-    std::array<bool, 3> reads{true, true, true};
+    std::array<bool, 3> reads{true, true, true}, linear{};
 };
 Periods periods_of(const Tape &tape, const ir::Graph &graph);
 

@@ -82,9 +82,7 @@ Growth multiple(const Growth &a, double by) { return product(a, Growth{by}, true
 FarOut::FarOut(const std::array<Interval, 3> &cell) {
     unsigned endless = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-        if (cell[i].finite()) continue;
-        if (cell[i].mignitude() < 1) return;
-        endless |= 1u << i;
+        if (!cell[i].finite() && cell[i].mignitude() >= 1) endless |= 1u << i;
     }
     for (unsigned set = 1; set < 8; ++set) {
         if ((set & ~endless) != 0) continue;
@@ -193,7 +191,7 @@ Growth FarOut::greater(const Growth &a, const Growth &b) const {
 }
 
 Growth FarOut::lesser(const Growth &a, const Growth &b) const {
-    constexpr double far_above = 8;
+    constexpr double far_above = 1e4;
     if (!a.known() || !b.known()) return a.known() ? a : b;
     const double x = most(a), y = most(b);
     if (a.degree() < b.degree()) return x <= far_above * y ? a : b;

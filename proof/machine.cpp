@@ -192,6 +192,11 @@ void Machine::conclude() {
         }
 }
 
+bool Machine::leaves_single() const {
+    return std::ranges::any_of(
+        value_, [](const Interval &v) { return v.magnitude() > ir::rounding::max_single; });
+}
+
 void Machine::know_nothing() {
     std::ranges::fill(value_, Interval::everything());
     std::ranges::fill(grad_,

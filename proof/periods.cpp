@@ -155,8 +155,13 @@ Periods periods_of(const Tape &tape, const ir::Graph &graph) {
         }
         if (!simple) continue;
         Way result;
-        for (std::uint32_t c = 0; c < tape.size[tape.result]; ++c)
-            result = meet_periods(result, blur(ways[tape.first[tape.result] + c]));
+        bool linear = true;
+        for (std::uint32_t c = 0; c < tape.size[tape.result]; ++c) {
+            const Way own = ways[tape.first[tape.result] + c];
+            linear = linear && (own.kind == Way::None || own.kind == Way::Linear);
+            result = meet_periods(result, blur(own));
+        }
+        out.linear[axis] = linear;
         if (result.kind == Way::None) out.reads[axis] = false;
         if (result.kind == Way::Periodic) out.period[axis] = result.number;
     }

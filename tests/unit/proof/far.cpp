@@ -64,6 +64,14 @@ const std::vector<FarField> far_fields{
     {"a power over an exponential",
      [](Faraway &b) { return b.over(b.mul(b.x, b.x), b.plus_1(b.exp(b.s.length(b.s.p)))); }, 0.29,
      0.45},
+    {"a height over two coordinates", // y - x exp(-sqrt(x^2 + z^2)): as steep whatever y is
+     [](Faraway &b) { return b.g.sub(b.y, b.mul(b.x, b.falls(b.s.length(b.xz())))); }, 1.41, 1.5},
+    {"a turn by an angle that falls slowly", // 2 / (1 + r^2)
+     [](Faraway &b) {
+         const NodeId a = b.over(b.n(2), b.plus_1(b.r2()));
+         return b.g.sub(b.mul(b.s.cos(a), b.x), b.mul(b.s.sin(a), b.z));
+     },
+     1.6, 1.8},
     {"a third power over a square", // all slopes are bounded, and grow no more
      [](Faraway &b) { return b.over(b.power(b.x, 3), b.plus_1(b.r2())); }, 1.29, 12},
 };
@@ -97,6 +105,17 @@ TEST_CASE("what falls along another axis, too slowly, or jumps far out has none"
              b.mul(b.x, b.falls(b.g.sub(x2, b.mul(x2, b.y)))),
          })
         CHECK_FALSE(b.bound(field) < 1e6);
+}
+
+TEST_CASE(
+    "products that leave single precision where rays go have no bound, though their slope has") {
+    Faraway b;
+    const NodeId x2 = b.mul(b.x, b.x), x3 = b.mul(x2, b.x), x6 = b.mul(x3, x3), x7 = b.mul(x6, b.x);
+    CHECK(b.bound(b.over(x6, b.plus_1(x6))) < 3); // 10^36 at 10^6
+    const proof::FieldBound found = b.s.bound(b.over(x7, b.plus_1(b.mul(x7, b.x))));
+    CHECK_FALSE(found.lipschitz < 1e6);
+    CHECK(found.trouble == proof::Trouble::Overflow);
+    CHECK(b.bound(b.over(b.n(1), b.plus_1(b.mul(x7, b.x)))) < 3); // 1 over infinity is 0
 }
 
 TEST_CASE("products of powers bound what they are of") {
