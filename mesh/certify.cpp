@@ -42,6 +42,9 @@ Certificate kept_of(const Earlier &earlier, const Octree &octree) {
             kept.undecided.push_back(earlier.certificate.undecided[k]);
             kept.doubts.push_back(earlier.certificate.doubts[k]);
         }
+    for (const std::int32_t node : earlier.certificate.empty)
+        if (octree.nodes[static_cast<std::size_t>(node)].children == none)
+            kept.empty.push_back(node);
     for (const Cell &cell : earlier.certificate.seams)
         if (!changed(cell)) kept.seams.push_back(cell);
     for (const Unproved &place : earlier.certificate.unproved)

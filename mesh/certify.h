@@ -23,6 +23,7 @@ struct Certificate {
     // axis: what surface there is between them is not drawn.
     std::vector<Cell> seams;
     double seam_width = 0;
+    std::vector<std::int32_t> empty; // leaves, by their nodes, in which no surface is
     std::vector<Unproved> unproved;
     std::size_t components = 0;                  // of the mesh
     long genus = 0;                              // of all of them together

@@ -78,6 +78,7 @@ double first_near(const Inquiry &inquiry, const std::vector<std::uint32_t> &tria
 // What is found of the surface in a leaf.
 struct Reach {
     bool decided = true;
+    bool empty = true;                  // as far as is known: there is none
     double farthest = 0;                // from the mesh at most
     std::optional<double> seam_width{}; // where parts of the leaf are left out as seams
     Point doubt{};                      // of what is not decided: about there
@@ -89,6 +90,88 @@ struct Budget {
     std::size_t divisions = 0, close_runs = 0;
 };
 
+// What the look into one leaf shares.
+struct LeafLook {
+    const Inquiry &inquiry;
+    Evaluator &evaluator;
+    cpu::Boxes &boxes;
+    Budget &budget;
+    TapePtr tape; // holds in the leaf
+    Reach reach{};
+
+    // Goes on with a tape for this leaf alone, where that is shorter.
+    void shorten_tape(const Box &whole) {
+        boxes.count = 16;
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t k = 0; k < boxes.count; ++k)
+                boxes.lo[i][k] = whole.lo[i], boxes.hi[i][k] = whole.hi[i];
+        ranges_over(evaluator, *tape, boxes);
+        tape = shortened(evaluator, tape, 0);
+    }
+
+    bool is_seam(const Box &box, Seen seen) {
+        if (budget.divisions < seam_work) return false;
+        const bool closely = budget.close_runs > 0;
+        const auto [seam, runs] = search_seam(evaluator, *tape, boxes, {box.lo, box.hi}, seen,
+                                              seam_thickness(inquiry.made.octree.lattice), closely);
+        std::size_t &left = closely ? budget.close_runs : budget.divisions;
+        left -= std::min(left, runs);
+        if (seam) reach.seam_width = std::max(reach.seam_width.value_or(0), seam->width);
+        return seam.has_value();
+    }
+
+    // Takes boxes away that are seams, beginning with the one in the middle. `to_first`: it ends with the
+    // first that is none, which alone is left. `far_alone`: others than those are kept unasked.
+    void leave_out_seams(std::vector<Box> &left, bool to_first, bool far_alone) {
+        constexpr std::size_t at_once = 28; // as many as a run of the tape takes
+        if (budget.divisions < seam_work) return;
+        std::vector<Box> kept;
+        std::ranges::rotate(left, left.begin() + static_cast<std::ptrdiff_t>(left.size() / 2));
+        std::vector<Extent> extents;
+        for (std::size_t from = 0; from < left.size(); from += at_once) {
+            const auto some = std::span(left).subspan(from, std::min(at_once, left.size() - from));
+            extents.clear();
+            for (const Box &box : some)
+                if (box.far || !far_alone) extents.push_back({box.lo, box.hi});
+            const std::vector<Seen> seen = look_for_seams(
+                evaluator, *tape, extents, seam_thickness(inquiry.made.octree.lattice));
+            std::size_t next = 0;
+            for (const Box &box : some) {
+                const bool asked = box.far || !far_alone;
+                if (asked && is_seam(box, seen[next++])) continue;
+                kept.push_back(box);
+                if (to_first) {
+                    left = std::move(kept);
+                    return;
+                }
+            }
+        }
+        left = std::move(kept);
+    }
+};
+
+// Boxes that are near enough to the mesh are taken away.
+void leave_out_near(const Inquiry &inquiry, const Candidates &candidates, std::vector<Box> &boxes,
+                    double &farthest) {
+    std::vector<Box> left;
+    for (const Box &box : boxes) {
+        const Real3 middle = middle_of(box);
+        const double half = 0.5 * distance(real(box.lo), real(box.hi));
+        // The first that is near enough will do: the claim is no more than what is allowed.
+        const double enough = inquiry.allowed - half;
+        double d =
+            enough < 0 ? 2 * inquiry.allowed : first_near(inquiry, candidates.own, middle, enough);
+        if (d > enough && enough >= 0)
+            if (const auto near = inquiry.tree->nearest(middle, inquiry.allowed, enough))
+                d = near->distance;
+        if (d <= enough)
+            farthest = std::max(farthest, (d + half) * outward);
+        else
+            left.push_back({box.lo, box.hi, d >= inquiry.allowed});
+    }
+    boxes = std::move(left);
+}
+
 // Decided: no surface in a leaf is farther from the mesh than is allowed, but at seams. It would be
 // undecided too where that took more divisions of boxes than are left.
 Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
@@ -96,7 +179,6 @@ Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
     const Octree &octree = inquiry.made.octree;
     const std::int32_t side = octree.lattice.cells(leaf.level);
     const Node &node = octree.nodes[static_cast<std::size_t>(leaf.node)];
-    const cpu::ShortTape &tape = *octree.tapes[static_cast<std::size_t>(node.task)];
     const Box whole{point_of(octree.lattice, leaf.at),
                     point_of(octree.lattice, corner(leaf.at, side, 7)), false};
     find_own(inquiry, leaf, candidates);
@@ -104,54 +186,34 @@ Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
     const int deepest =
         std::max(least_finest_box, finest_box - std::max(0, leaf.level - octree.lattice.level));
     std::vector<Box> open{whole};
-    Reach reach;
-    const auto is_seam = [&](const Box &box, bool closely) {
-        if (budget.divisions < seam_work) return false;
-        std::size_t runs = 0;
-        closely = closely && budget.close_runs > 0;
-        const auto seam = seam_in(evaluator, tape, boxes, box.lo, box.hi,
-                                  seam_thickness(octree.lattice), closely, &runs);
-        std::size_t &left = closely ? budget.close_runs : budget.divisions;
-        left -= std::min(left, runs);
-        if (seam) reach.seam_width = std::max(reach.seam_width.value_or(0), seam->width);
-        return seam.has_value();
-    };
+    LeafLook look{inquiry, evaluator, boxes, budget,
+                  octree.tapes[static_cast<std::size_t>(node.task)]};
+    Reach &reach = look.reach;
     for (int depth = 0; !open.empty(); ++depth) {
-        std::vector<Box> left;
-        for (const Box &box : open) {
-            const Real3 middle = middle_of(box);
-            const double half = 0.5 * distance(real(box.lo), real(box.hi));
-            // The first that is near enough will do: the claim is no more than what is allowed.
-            const double enough = inquiry.allowed - half;
-            double d = enough < 0 ? 2 * inquiry.allowed
-                                  : first_near(inquiry, candidates.own, middle, enough);
-            if (d > enough && enough >= 0)
-                if (const auto near = inquiry.tree->nearest(middle, inquiry.allowed, enough))
-                    d = near->distance;
-            if (d <= enough)
-                reach.farthest = std::max(reach.farthest, (d + half) * outward);
-            else
-                left.push_back({box.lo, box.hi, d >= inquiry.allowed});
-        }
-        if (depth % seam_depth == 0)
-            std::erase_if(
-                left, [&](const Box &box) { return (box.far || depth > 0) && is_seam(box, true); });
-        if (left.empty()) break;
-        if (depth == deepest || searched || left.size() > budget.divisions) {
+        const std::size_t all = open.size();
+        leave_out_near(inquiry, candidates, open, reach.farthest);
+        reach.empty = reach.empty && open.size() == all;
+        if (open.empty()) break;
+        if (depth == 0) look.shorten_tape(whole);
+        const bool last = depth == deepest || searched;
+        if (depth % seam_depth == 0) look.leave_out_seams(open, last, depth == 0);
+        if (open.empty()) break;
+        if (last || open.size() > budget.divisions) {
             reach.decided = false;
             for (std::size_t i = 0; i < 3; ++i)
-                reach.doubt[i] = static_cast<float>(middle_of(left[left.size() / 2])[i]);
+                reach.doubt[i] = static_cast<float>(middle_of(open[0])[i]);
             break;
         }
-        budget.divisions -= left.size();
-        open = open_parts(inquiry, evaluator, boxes, tape, left);
+        budget.divisions -= open.size();
+        open = open_parts(inquiry, evaluator, boxes, *look.tape, open);
     }
+    reach.empty = reach.empty && reach.decided && !reach.seam_width;
     return reach;
 }
 
 constexpr std::size_t piece_of_work = 512;
 constexpr std::size_t divisions_a_leaf = 32; // of boxes, on average over a piece of work
-constexpr std::size_t close_runs = 8192;     // in a piece of work
+constexpr std::size_t close_runs = 16384;    // in a piece of work
 
 struct Certifier {
     explicit Certifier(const Field &field) : evaluator(field) {}
@@ -166,8 +228,10 @@ void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progres
                      Certificate &certificate) {
     const Lattice &lattice = inquiry.made.octree.lattice;
     std::vector<Cell> leaves = open_leaves(inquiry.made.octree);
+    std::ranges::sort(certificate.empty);
     std::erase_if(leaves, [&](const Cell &leaf) {
-        return inquiry.proved_before(real(point_of(lattice, leaf.at)));
+        return inquiry.proved_before(real(point_of(lattice, leaf.at))) ||
+               std::ranges::binary_search(certificate.empty, leaf.node);
     });
     // What was searched for in vain is not searched again.
     std::vector<std::int32_t> searched;
@@ -177,6 +241,7 @@ void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progres
         double farthest = 0, seam_width = 0;
         std::vector<Cell> undecided, seams;
         std::vector<Point> doubts;
+        std::vector<std::int32_t> empty;
         std::size_t divisions = 0;
     };
     std::vector<Found> found((leaves.size() + piece_of_work - 1) / piece_of_work);
@@ -196,6 +261,7 @@ void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progres
                     here.doubts.push_back(reach.doubt);
                     continue;
                 }
+                if (reach.empty) here.empty.push_back(leaves[k].node);
                 here.farthest = std::max(here.farthest, reach.farthest);
                 if (!(reach.seam_width > 0.0)) continue;
                 here.seams.push_back(leaves[k]);
@@ -212,6 +278,7 @@ void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progres
         append(certificate.undecided, some.undecided);
         append(certificate.doubts, some.doubts);
         append(certificate.seams, some.seams);
+        append(certificate.empty, some.empty);
     }
 }
 

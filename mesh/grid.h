@@ -101,35 +101,37 @@ class Grid {
     std::unordered_map<std::uint64_t, std::uint32_t> begins_;
 };
 
-// Where cells were divided: blocks of four drawing cells a side, and those about them.
+// Where cells were divided: the blocks of space about them.
 class Region {
   public:
     explicit Region(const Lattice &lattice)
-        : lattice_(lattice), side_(blocks * lattice.side(lattice.level)) {}
+        : lattice_(lattice), side_(lattice.side(lattice.level)) {}
     void add(const Cell &cell) {
-        const auto at = block_of(real(point_of(lattice_, corner(cell.at, 1, 0))));
-        if (!changed_.insert(key_of(at)).second) return;
-        for (std::int64_t x = -2; x <= 2; ++x)
-            for (std::int64_t y = -2; y <= 2; ++y)
-                for (std::int64_t z = -2; z <= 2; ++z) {
-                    const std::array<std::int64_t, 3> near{at[0] + x, at[1] + y, at[2] + z};
-                    around_.insert(key_of(near));
-                    if (std::max({x * x, y * y, z * z}) < 4) beside_.insert(key_of(near));
-                }
+        const Real3 at = real(point_of(lattice_, corner(cell.at, 1, 0)));
+        if (!changed_.insert(key_of(block_of(at, few))).second) return;
+        add_about(block_of(at, few), beside_);
+        add_about(block_of(at, more), around_);
     }
     // Whether a point is no more than four drawing cells from a divided one, or eight: it may be of
     // those that are a little farther.
-    bool beside(const Real3 &p) const { return beside_.contains(key_of(block_of(p))); }
-    bool around(const Real3 &p) const { return around_.contains(key_of(block_of(p))); }
+    bool beside(const Real3 &p) const { return beside_.contains(key_of(block_of(p, few))); }
+    bool around(const Real3 &p) const { return around_.contains(key_of(block_of(p, more))); }
 
   private:
-    static constexpr double blocks = 4;
-    std::array<std::int64_t, 3> block_of(const Real3 &p) const {
+    using Block = std::array<std::int64_t, 3>;
+    static constexpr double few = 2, more = 4; // drawing cells: the sides of blocks
+    Block block_of(const Real3 &p, double cells) const {
         const Real3 origin = real(point_of(lattice_, {0, 0, 0}));
-        std::array<std::int64_t, 3> at{};
+        Block at{};
         for (std::size_t i = 0; i < 3; ++i)
-            at[i] = static_cast<std::int64_t>(std::floor((p[i] - origin[i]) / side_));
+            at[i] = static_cast<std::int64_t>(std::floor((p[i] - origin[i]) / (cells * side_)));
         return at;
+    }
+    static void add_about(const Block &at, std::unordered_set<std::uint64_t> &blocks) {
+        for (std::int64_t x = -2; x <= 2; ++x)
+            for (std::int64_t y = -2; y <= 2; ++y)
+                for (std::int64_t z = -2; z <= 2; ++z)
+                    blocks.insert(key_of(Block{at[0] + x, at[1] + y, at[2] + z}));
     }
     const Lattice lattice_;
     double side_;

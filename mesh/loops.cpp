@@ -128,7 +128,30 @@ bool join(std::span<const Pass> passes, Loops &loops) {
     return true;
 }
 
-void join_faces(const Octree &octree, Loops &loops, std::vector<Cell> &tangled) {
+// What loops are looked for: all, or those about cells that were divided.
+struct Scope {
+    const Lattice &lattice;
+    const Region *changed = nullptr;
+    bool all() const { return !changed; }
+    bool has(const Cell &cell) const {
+        return all() || changed->beside(real(point_of(lattice, cell.at)));
+    }
+    bool reads(const Cell &cell) const { // its edges too
+        return all() || changed->around(real(point_of(lattice, cell.at)));
+    }
+};
+
+// Whether a face is one of a cell that is looked at.
+bool has_any(const Scope &scope, const Loops &loops, std::span<const Pass> passes) {
+    return std::ranges::any_of(passes, [&](const Pass &pass) {
+        const Crossing &crossing = loops.crossings[static_cast<std::size_t>(pass.crossing)];
+        return scope.has(crossing.cells[pass.face]) ||
+               scope.has(crossing.cells[(std::size_t{pass.face} + 1) % 4]);
+    });
+}
+
+void join_faces(const Octree &octree, const Scope &scope, Loops &loops,
+                std::vector<Cell> &tangled) {
     std::vector<Pass> passes;
     passes.reserve(4 * loops.crossings.size());
     for (std::size_t c = 0; c < loops.crossings.size(); ++c) {
@@ -151,12 +174,15 @@ void join_faces(const Octree &octree, Loops &loops, std::vector<Cell> &tangled) 
         for (last = first; last < passes.size() && passes[last].key == passes[first].key;) ++last;
         const Crossing &crossing =
             loops.crossings[static_cast<std::size_t>(passes[first].crossing)];
-        if (!join(std::span(passes).subspan(first, last - first), loops)) {
+        const Cell owner = face_of(crossing, passes[first].face).owner;
+        const std::span<const Pass> here = std::span(passes).subspan(first, last - first);
+        // Where only some are looked for the faces at the end of these lack passes.
+        if (!join(here, loops) && has_any(scope, loops, here)) {
             ++loops.torn;
             loops.torn_at = crossing.low;
         }
-        const Cell owner = face_of(crossing, passes[first].face).owner;
-        if (last - first > 2 && owner.level < octree.settled) tangled.push_back(owner);
+        if (last - first > 2 && owner.level < octree.settled && scope.has(owner))
+            tangled.push_back(owner);
     }
 }
 
@@ -204,10 +230,12 @@ bool whole_edges(const Octree &octree, const Loops &loops, const Patch &patch) {
     return true;
 }
 
-void find_patches(const Octree &octree, Loops &loops, std::vector<Cell> &tangled) {
+void find_patches(const Octree &octree, const Scope &scope, Loops &loops,
+                  std::vector<Cell> &tangled) {
     for (std::size_t c = 0; c < loops.crossings.size(); ++c)
         for (int quarter = 0; quarter < 4; ++quarter)
-            if (loops.crossings[c].patches[static_cast<std::size_t>(quarter)] == none)
+            if (const auto q = static_cast<std::size_t>(quarter);
+                loops.crossings[c].patches[q] == none && scope.has(loops.crossings[c].cells[q]))
                 follow(loops, static_cast<std::int32_t>(c), quarter);
     std::vector<std::int32_t> only(octree.nodes.size(), none); // by node: its first patch
     for (std::size_t p = 0; p < loops.patches.size(); ++p) {
@@ -225,11 +253,10 @@ void find_patches(const Octree &octree, Loops &loops, std::vector<Cell> &tangled
             tangled.push_back(patch.cell);
 }
 
-} // namespace
-
-Loops find_loops(const Octree &octree, unsigned threads, Progress &progress) {
+Loops loops_in(const Octree &octree, const Scope &scope, unsigned threads, Progress &progress) {
     Loops loops;
-    const std::vector<Cell> leaves = open_leaves(octree);
+    std::vector<Cell> leaves = open_leaves(octree);
+    std::erase_if(leaves, [&](const Cell &leaf) { return !scope.reads(leaf); });
     constexpr std::size_t piece = 4096;
     std::vector<std::vector<Crossing>> found((leaves.size() + piece - 1) / piece);
     in_parallel(
@@ -250,15 +277,26 @@ Loops find_loops(const Octree &octree, unsigned threads, Progress &progress) {
         loops.crossings.insert(loops.crossings.end(), some.begin(), some.end());
         some = {};
     }
-    join_faces(octree, loops, loops.tangled);
+    join_faces(octree, scope, loops, loops.tangled);
     if (loops.torn > 0) return loops;
-    find_patches(octree, loops, loops.tangled);
+    find_patches(octree, scope, loops, loops.tangled);
     const auto before = [](const Cell &x, const Cell &y) { return x.node < y.node; };
     std::ranges::sort(loops.tangled, before);
     const auto same = [](const Cell &x, const Cell &y) { return x.node == y.node; };
     loops.tangled.erase(std::unique(loops.tangled.begin(), loops.tangled.end(), same),
                         loops.tangled.end());
     return loops;
+}
+
+} // namespace
+
+Loops find_loops(const Octree &octree, unsigned threads, Progress &progress) {
+    return loops_in(octree, {octree.lattice}, threads, progress);
+}
+
+Loops find_tangled(const Octree &octree, const Region &changed, unsigned threads,
+                   Progress &progress) {
+    return loops_in(octree, {octree.lattice, &changed}, threads, progress);
 }
 
 } // namespace fathom::mesh

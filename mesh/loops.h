@@ -3,6 +3,7 @@
 // of surface. Knows no coordinates but the lattice's (docs/meshes.md, 3).
 #pragma once
 
+#include "mesh/grid.h"
 #include "mesh/octree.h"
 
 namespace fathom::mesh {
@@ -54,5 +55,10 @@ struct Loops {
 };
 
 Loops find_loops(const Octree &octree, unsigned threads, Progress &progress);
+
+// Only which cells beside those that were divided are tangled, and whether faces are torn there: the
+// loops are not whole.
+Loops find_tangled(const Octree &octree, const Region &changed, unsigned threads,
+                   Progress &progress);
 
 } // namespace fathom::mesh

@@ -4,6 +4,7 @@
 #include "mesh/thin.h"
 
 #include <cmath>
+#include <optional>
 
 namespace fathom::mesh {
 namespace {
@@ -23,8 +24,10 @@ OctreeSettings octree_settings(const Settings &settings) {
     return octree;
 }
 
-Failure look_for_loops(Made &made, unsigned threads, Progress &progress) {
-    made.loops = find_loops(made.octree, threads, progress);
+// `changed`: only what is tangled about these cells.
+Failure look_for_loops(Made &made, const Region *changed, unsigned threads, Progress &progress) {
+    made.loops = changed ? find_tangled(made.octree, *changed, threads, progress)
+                         : find_loops(made.octree, threads, progress);
     if (progress.cancelled) return Failure::Cancelled;
     if (made.loops.torn == 0) return Failure::None;
     made.place = point_of(made.octree.lattice, made.loops.torn_at);
@@ -49,7 +52,7 @@ Failure draw_evenly(Made &made, const Field &field, const Settings &settings,
     made.octree = make_octree(field, made.octree.lattice, octree, quiet);
     divided.clear();
     if (quiet.cancelled) return Failure::Cancelled;
-    const Failure failure = look_for_loops(made, octree.threads, progress);
+    const Failure failure = look_for_loops(made, nullptr, octree.threads, progress);
     if (failure != Failure::None) return failure;
     list_tangled(made);
     made.loops.tangled.clear(); // cells of one size need not be divided
@@ -60,16 +63,27 @@ Failure draw_evenly(Made &made, const Field &field, const Settings &settings,
 // is in vain the mesh may be begun again.
 Failure untangle(Made &made, const Field &field, const Settings &settings, bool again,
                  std::size_t most, std::vector<Cell> &divided, Progress &progress) {
-    constexpr int most_rounds = 64;
+    constexpr int most_rounds = 1024; // a thin edge may tangle one cell after the other
     const OctreeSettings octree = octree_settings(settings);
     const std::size_t before = made.octree.nodes.size();
     const std::size_t bound = before + std::max(times_untangled * before, nodes_untangled);
+    std::optional<Region> changed; // where cells were divided; no others can have become tangled
+    const auto note = [&](const std::vector<Cell> &cells) {
+        changed.emplace(made.octree.lattice);
+        for (const Cell &cell : cells) changed->add(cell);
+    };
+    if (!divided.empty()) note(divided);
     for (int round = 0; round < most_rounds; ++round) {
         if (made.octree.nodes.size() > most) return Failure::TooMany;
-        const Failure failure = look_for_loops(made, octree.threads, progress);
+        const Failure failure =
+            look_for_loops(made, changed ? &*changed : nullptr, octree.threads, progress);
         if (failure != Failure::None) return failure;
         const std::vector<Cell> &tangled = made.loops.tangled;
-        if (tangled.empty()) return Failure::None;
+        if (tangled.empty()) {
+            if (!changed) return Failure::None;
+            changed.reset(); // now all loops
+            continue;
+        }
         if (again && (made.octree.nodes.size() > bound ||
                       thinner_in(field, made.octree, tangled, few_tangled, shows_whole,
                                  octree.threads, progress)))
@@ -78,12 +92,14 @@ Failure untangle(Made &made, const Field &field, const Settings &settings, bool 
                                      octree.threads, progress)) {
             // Their parts would be as tangled. Those alone are divided that have to be.
             list_tangled(made);
+            changed.reset();
             continue;
         }
         divided.insert(divided.end(), tangled.begin(), tangled.end());
         divide(made.octree, field, tangled, octree, progress);
+        note(tangled);
     }
-    return Failure::None;
+    return again ? draw_evenly(made, field, settings, divided, progress) : Failure::TooMany;
 }
 
 // From an octree without tangled cells to the mesh.

@@ -235,25 +235,48 @@ void graft_all(Octree &octree, const Field &field, const std::vector<Cell> &cell
               trees[k]);
 }
 
+// How wide the seams in some cells are, that have one tape; what is none is left as it is.
+void measure_seams(const Octree &octree, Divider &divider, std::span<const Cell> cells,
+                   bool closely, std::span<double> widths) {
+    const double thin = seam_thickness(octree.lattice);
+    const Node &first = octree.nodes[static_cast<std::size_t>(cells[0].node)];
+    const cpu::ShortTape &tape = *octree.tapes[static_cast<std::size_t>(first.task)];
+    std::vector<Extent> extents;
+    std::vector<std::size_t> asked;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        const Cell &cell = cells[k];
+        if (octree.nodes[static_cast<std::size_t>(cell.node)].crossed()) continue;
+        const std::int32_t side = octree.lattice.cells(cell.level);
+        extents.push_back({point_of(octree.lattice, cell.at),
+                           point_of(octree.lattice, corner(cell.at, side, 7))});
+        asked.push_back(k);
+    }
+    const std::vector<Seen> seen = look_for_seams(divider.evaluator, tape, extents, thin);
+    for (std::size_t n = 0; n < asked.size(); ++n) {
+        const Node &node = octree.nodes[static_cast<std::size_t>(cells[asked[n]].node)];
+        const auto seam =
+            search_seam(divider.evaluator, tape, divider.boxes, extents[n], seen[n], thin, closely)
+                .seam;
+        if (seam && seam->solid == (node.signs != 0)) widths[asked[n]] = seam->width;
+    }
+}
+
 // Takes those cells away in which parts of the solid only touch: they are of one sign, or seams.
 void find_seams(Octree &octree, const Field &field, std::vector<Cell> &cells, bool closely,
                 const OctreeSettings &settings, Progress &progress) {
     constexpr std::size_t group = 64;
     std::vector<double> widths(cells.size(), -1); // -1: no seam
+    const auto task = [&](std::size_t k) {
+        return octree.nodes[static_cast<std::size_t>(cells[k].node)].task;
+    };
     in_parallel((cells.size() + group - 1) / group, settings.threads, progress,
                 [&] { return Divider(field); },
                 [&](Divider &divider, std::size_t number) {
                     const std::size_t end = std::min(cells.size(), (number + 1) * group);
-                    for (std::size_t k = number * group; k < end; ++k) {
-                        const Node &node = octree.nodes[static_cast<std::size_t>(cells[k].node)];
-                        if (node.crossed()) continue;
-                        const std::int32_t side = octree.lattice.cells(cells[k].level);
-                        const auto seam = seam_in(
-                            divider.evaluator, *octree.tapes[static_cast<std::size_t>(node.task)],
-                            divider.boxes, point_of(octree.lattice, cells[k].at),
-                            point_of(octree.lattice, corner(cells[k].at, side, 7)),
-                            seam_thickness(octree.lattice), closely);
-                        if (seam && seam->solid == (node.signs != 0)) widths[k] = seam->width;
+                    for (std::size_t k = number * group, next; k < end; k = next) {
+                        for (next = k + 1; next < end && task(next) == task(k);) ++next;
+                        measure_seams(octree, divider, std::span(cells).subspan(k, next - k),
+                                      closely, std::span(widths).subspan(k, next - k));
                     }
                 });
     if (progress.cancelled) return;

@@ -11,10 +11,9 @@ namespace {
 
 constexpr std::size_t cuts = 8;        // that a slab is cut into
 constexpr std::size_t most_open = 3;   // at one time: a plane lies in two at most
-constexpr double most_thin = 32;       // all gaps or sheets together
 constexpr int most_cuttings = 24;      // floats cannot tell more cuts of cuts apart
 constexpr int end_cuttings = 3;        // … of what seems to reach the end of a box
-constexpr std::size_t most_levels = 6; // that are tried
+constexpr std::size_t most_levels = 9; // that are tried
 constexpr double along_gradient = 0.9; // the cosine from where a number may vary as the field does
 constexpr std::size_t most_runs = 400; // of the tape, for one box
 constexpr double most_thinnest =
@@ -233,58 +232,6 @@ struct Look {
     }
 };
 
-// Some places in a box, none of them likely to lie in a plane that people choose.
-Points places_in(const Point &lo, const Point &hi) {
-    constexpr double shares[][3] = {{0.51, 0.49, 0.53}, {0.07, 0.19, 0.11}, {0.93, 0.13, 0.23},
-                                    {0.17, 0.91, 0.29}, {0.89, 0.83, 0.17}, {0.13, 0.23, 0.91},
-                                    {0.87, 0.31, 0.83}, {0.29, 0.87, 0.79}, {0.79, 0.93, 0.93}};
-    Points points;
-    for (const auto &share : shares) {
-        Point p{};
-        for (std::size_t i = 0; i < 3; ++i)
-            p[i] = static_cast<float>(lo[i] + share[i] * (double(hi[i]) - lo[i]));
-        points.add(p);
-    }
-    return points;
-}
-
-// Whether it seems that a box may hold a seam: from some places, with their values, steps of one and a
-// half of Newton's come nearer and nearer to 0, and never to the other sign, as they soon do where the
-// field changes its sign. Most boxes that ranges do not decide hold surface, or are only loosely known.
-bool may_be_seam(Evaluator &evaluator, const cpu::ShortTape &tape, Points points,
-                 const std::vector<float> &values, const Point &lo, const Point &hi, double thin) {
-    constexpr int steps = 6, few_steps = 3;
-    constexpr double beyond = 1.5;                   // of Newton's step
-    constexpr float nearer = 0.25f, a_little = 0.8f; // than the nearest place at first
-    const auto least = [](const std::vector<float> &of) {
-        float found = std::numeric_limits<float>::infinity();
-        for (const float x : of) found = std::min(found, std::fabs(x));
-        return found;
-    };
-    const bool solid = values[0] <= 0;
-    const float first = least(values);
-    float nearest = first;
-    std::array<std::vector<float>, 4> slopes;
-    for (int step = 0; step <= steps; ++step) {
-        gradients_at(evaluator, tape, points, slopes);
-        for (const float value : slopes[0])
-            if ((value <= 0) != solid && std::fabs(value) > most_thin * thin) return false;
-        nearest = std::min(nearest, least(slopes[0]));
-        if (step == few_steps && nearest > a_little * first) return false;
-        for (std::size_t k = 0; k < points.size(); ++k) {
-            double squares = 0;
-            for (std::size_t i = 0; i < 3; ++i)
-                squares += double(slopes[1 + i][k]) * slopes[1 + i][k];
-            if (!(squares > 0)) continue;
-            const double by = beyond * slopes[0][k] / squares;
-            for (std::size_t i = 0; i < 3; ++i)
-                points.at[i][k] = std::clamp(
-                    static_cast<float>(points.at[i][k] - by * slopes[1 + i][k]), lo[i], hi[i]);
-        }
-    }
-    return nearest <= nearer * first;
-}
-
 double cosine(const Level &x, const Level &y) {
     double product = 0, a = 0, b = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -310,17 +257,25 @@ bool may_hold(const Level &level, const std::array<std::vector<float>, 4> &slope
 }
 
 // Those that are worth a look, in the order of the tape. Of many rather the earliest one of each
-// direction, on which the others of that direction are likely to depend.
+// direction, on which the others of that direction are likely to depend; then those of directions in
+// which no slope that was seen points, as one of the planes that meet in a corner may lie.
 std::vector<Level> chosen_levels(const std::vector<Level> &levels,
                                  const std::array<std::vector<float>, 4> &slopes) {
     constexpr double parallel = 0.9999;
-    std::vector<Level> first, more;
-    for (const Level &level : levels) {
-        if (!may_hold(level, slopes) || !(level.lo < level.hi)) continue;
-        const bool new_way = std::ranges::none_of(
-            first, [&](const Level &one) { return cosine(one, level) > parallel; });
-        (new_way ? first : more).push_back(level);
-    }
+    std::vector<Level> first, more, unseen;
+    for (const bool seen : {true, false})
+        for (const Level &level : levels) {
+            if (may_hold(level, slopes) != seen || !(level.lo < level.hi)) continue;
+            const auto is_new = [&](const std::vector<Level> &all) {
+                return std::ranges::none_of(
+                    all, [&](const Level &one) { return cosine(one, level) > parallel; });
+            };
+            if (seen)
+                (is_new(first) ? first : more).push_back(level);
+            else if (is_new(first) && is_new(unseen))
+                unseen.push_back(level);
+        }
+    first.insert(first.end(), unseen.begin(), unseen.end());
     first.insert(first.end(), more.begin(), more.end());
     if (first.size() > most_levels) first.resize(most_levels);
     std::ranges::sort(first, {}, [](const Level &level) { return level.where.step; });
@@ -350,16 +305,17 @@ void tie_alike(Across &across, const std::vector<Level> &levels, const Point &lo
 } // namespace
 
 std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
-                            const Point &lo, const Point &hi, double thin, bool closely,
-                            std::size_t *runs) {
-    const Points points = places_in(lo, hi);
-    std::vector<float> values;
-    values_at(evaluator, tape, points, values);
-    const bool solid = values[0] <= 0;
-    for (const float value : values)
-        if ((value <= 0) != solid) return std::nullopt;
-    if (!may_be_seam(evaluator, tape, points, values, lo, hi, thin)) return std::nullopt;
-    Look look{evaluator, tape, boxes, solid, thin, {}, 0};
+                            const Point &lo, const Point &hi, double thin, bool closely) {
+    const Extent box{lo, hi};
+    const Seen seen = look_for_seams(evaluator, tape, {&box, 1}, thin)[0];
+    return search_seam(evaluator, tape, boxes, box, seen, thin, closely).seam;
+}
+
+SeamSearch search_seam(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
+                       const Extent &box, Seen seen, double thin, bool closely) {
+    if (seen == Seen::NoSeam) return {};
+    const auto &[lo, hi] = box;
+    Look look{evaluator, tape, boxes, seen == Seen::MaySolid, thin, {}, 0};
     Place place;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         look.directions.push_back({axis, {{}, lo[axis], hi[axis], 1, 0, {}}});
@@ -368,7 +324,7 @@ std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cp
     std::optional<double> width = look.width_in(place, 0);
     if (!width) {
         std::array<std::vector<float>, 4> slopes;
-        gradients_at(evaluator, tape, points, slopes);
+        slopes_in(evaluator, tape, box, slopes);
         ++look.runs;
         const std::vector<Level> levels = levels_in(evaluator, tape, boxes, lo, hi);
         for (const Level &level : chosen_levels(levels, slopes)) {
@@ -379,8 +335,7 @@ std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cp
         if (closely || look.directions.size() > 3)
             width = look.width_in(place, closely ? most_strips : 0);
     }
-    if (runs) *runs += look.runs;
-    return width ? std::optional(Seam{solid, *width}) : std::nullopt;
+    return {width ? std::optional(Seam{look.solid, *width}) : std::nullopt, look.runs};
 }
 
 } // namespace fathom::mesh

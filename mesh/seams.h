@@ -5,7 +5,7 @@
 // solid without it is what is drawn.
 #pragma once
 
-#include "mesh/field.h"
+#include "mesh/seam_samples.h"
 
 #include <optional>
 
@@ -16,13 +16,22 @@ struct Seam {
     double width = 0;   // of these together at most, along one axis; 0: there are none
 };
 
+inline constexpr double most_thin = 32; // thin slabs: all gaps or sheets of a seam together
+
 // Whether a box is solid but for gaps, or empty but for sheets. Slabs of it are cut up until no surface
 // is in them or they are no thicker than `thin`: at right angles to an axis, or else the places where
 // a number that the field's tape computes on its way, and that changes steadily over the box, lies
 // between two floats. `closely`: also where up to three such planes meet, in an edge or a corner. The
-// box may be flat, but is no point. `boxes` is memory. `runs` counts how often the tape was run.
+// box may be flat, but is no point. `boxes` is memory.
 std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
-                            const Point &lo, const Point &hi, double thin, bool closely = false,
-                            std::size_t *runs = nullptr);
+                            const Point &lo, const Point &hi, double thin, bool closely = false);
+
+struct SeamSearch {
+    std::optional<Seam> seam;
+    std::size_t runs = 0; // of the tape over boxes
+};
+// The same of a box of which it is known what samples say.
+SeamSearch search_seam(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
+                       const Extent &box, Seen seen, double thin, bool closely);
 
 } // namespace fathom::mesh

@@ -79,6 +79,13 @@ TEST_CASE("parts that are flush leave nothing undecided, however they lie") {
              {"box(1).rotate(0.3, axis: [1, 2, 3]) & "
               "box(2).rotate(0.2, axis: [1, 2, 3]).rotate(0.1, axis: [1, 2, 3])",
               1, 1, 0},
+             {"((box(2) - box(1)) | box(1)).rotate(0.3, axis: [1, 2, 3])", 8, 1, 0},
+             {"(box(2) - box(1)).rotate(0.3, axis: [1, 2, 3]) | "
+              "box(1).rotate(0.2, axis: [1, 2, 3]).rotate(0.1, axis: [1, 2, 3])",
+              8, 1, 0},
+             {"(box([2, 1.6, 1.8]) - box([1, 0.7, 0.8])).rotate(0.7, axis: [3, -1, 1]) | "
+              "box([1, 0.7, 0.8]).rotate(0.5, axis: [3, -1, 1]).rotate(0.2, axis: [3, -1, 1])",
+              5.76, 1, 0},
          }) {
         INFO(text);
         const mesh::Mended made = mesh::make_certified_mesh(flush_scene(text), fine_cells(40));

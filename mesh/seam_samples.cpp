@@ -1,0 +1,153 @@
+#include "mesh/seam_samples.h"
+
+#include "mesh/seams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fathom::mesh {
+namespace {
+
+// Some places in a box, none of them likely to lie in a plane that people choose.
+constexpr double shares[][3] = {{0.51, 0.49, 0.53}, {0.07, 0.19, 0.11}, {0.93, 0.13, 0.23},
+                                {0.17, 0.91, 0.29}, {0.89, 0.83, 0.17}, {0.13, 0.23, 0.91},
+                                {0.87, 0.31, 0.83}, {0.29, 0.87, 0.79}, {0.79, 0.93, 0.93}};
+constexpr std::size_t places = std::size(shares);
+
+Point place_in(const Extent &box, const double (&share)[3]) {
+    Point p{};
+    for (std::size_t i = 0; i < 3; ++i)
+        p[i] = static_cast<float>(box.lo[i] + share[i] * (double(box.hi[i]) - box.lo[i]));
+    return p;
+}
+
+void add_places(const Extent &box, Points &points) {
+    for (const auto &share : shares) points.add(place_in(box, share));
+}
+
+double squared_slope(const std::array<std::vector<float>, 4> &slopes, std::size_t k) {
+    double squares = 0;
+    for (std::size_t i = 0; i < 3; ++i) squares += double(slopes[1 + i][k]) * slopes[1 + i][k];
+    return squares;
+}
+
+// Whether a value so far from 0 may fall to it within a box, by its slope.
+bool in_reach(double value, double squared_slope, const Extent &box) {
+    constexpr double reach = 1.5; // diagonals
+    double diagonal = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        diagonal += (double(box.hi[i]) - box.lo[i]) * (double(box.hi[i]) - box.lo[i]);
+    return value * value <= reach * reach * squared_slope * diagonal;
+}
+
+// Those boxes whose middle is not far from surface: one place is soon looked at.
+std::vector<std::size_t> near_surface(Evaluator &evaluator, const cpu::ShortTape &tape,
+                                      std::span<const Extent> boxes) {
+    Points points;
+    for (const Extent &box : boxes) points.add(place_in(box, shares[0]));
+    std::array<std::vector<float>, 4> slopes;
+    gradients_at(evaluator, tape, points, slopes);
+    std::vector<std::size_t> near;
+    for (std::size_t n = 0; n < boxes.size(); ++n)
+        if (const double squares = squared_slope(slopes, n);
+            !(squares > 0) || in_reach(slopes[0][n], squares, boxes[n]))
+            near.push_back(n);
+    return near;
+}
+
+// One box that may hold a seam as far as is known.
+struct Suspect {
+    std::size_t number = 0; // of the box
+    bool solid = false;
+    float first = 0, nearest = 0; // to 0 of all values: of the first step, and of all
+};
+
+// Takes one step from each place of a box towards 0, and beyond. False: it holds no seam.
+bool step_in(const std::array<std::vector<float>, 4> &slopes, std::size_t from, int step,
+             const Extent &box, double thin, Suspect &suspect, Points &points) {
+    constexpr int few_steps = 3;
+    constexpr double beyond = 1.5;   // of Newton's step
+    constexpr float a_little = 0.8f; // than the nearest place at first
+    float least = std::numeric_limits<float>::infinity();
+    for (std::size_t k = from; k < from + places; ++k) {
+        const float value = slopes[0][k];
+        if ((value <= 0) != suspect.solid && std::fabs(value) > most_thin * thin) return false;
+        least = std::min(least, std::fabs(value));
+    }
+    suspect.nearest = std::min(suspect.nearest, least);
+    if (step == few_steps && suspect.nearest > a_little * suspect.first) return false;
+    for (std::size_t k = from; k < from + places; ++k) {
+        const double squares = squared_slope(slopes, k);
+        if (!(squares > 0)) continue;
+        const double by = beyond * slopes[0][k] / squares;
+        for (std::size_t i = 0; i < 3; ++i)
+            points.at[i][k] = std::clamp(
+                static_cast<float>(points.at[i][k] - by * slopes[1 + i][k]), box.lo[i], box.hi[i]);
+    }
+    return true;
+}
+
+// The places of the boxes that are left, one after the other.
+void keep_places(const std::vector<std::size_t> &kept, Points &points) {
+    for (std::vector<float> &axis : points.at) {
+        for (std::size_t n = 0; n < kept.size(); ++n)
+            std::copy_n(axis.begin() + static_cast<std::ptrdiff_t>(kept[n]), places,
+                        axis.begin() + static_cast<std::ptrdiff_t>(n * places));
+        axis.resize(kept.size() * places);
+    }
+}
+
+} // namespace
+
+std::vector<Seen> look_for_seams(Evaluator &evaluator, const cpu::ShortTape &tape,
+                                 std::span<const Extent> boxes, double thin) {
+    constexpr int steps = 6;
+    constexpr float nearer = 0.25f; // than the nearest place at first
+    std::vector<Seen> seen(boxes.size(), Seen::NoSeam);
+    const std::vector<std::size_t> near = near_surface(evaluator, tape, boxes);
+    Points points;
+    for (const std::size_t n : near) add_places(boxes[n], points);
+    std::vector<float> values;
+    values_at(evaluator, tape, points, values);
+    std::vector<Suspect> suspects;
+    std::vector<std::size_t> kept; // where the places of those begin
+    for (std::size_t n = 0; n < near.size(); ++n) {
+        const std::span<const float> here = std::span(values).subspan(n * places, places);
+        Suspect suspect{near[n], here[0] <= 0, std::numeric_limits<float>::infinity(), 0};
+        for (const float value : here) suspect.first = std::min(suspect.first, std::fabs(value));
+        suspect.nearest = suspect.first;
+        if (!std::ranges::all_of(here, [&](float v) { return (v <= 0) == suspect.solid; }))
+            continue;
+        suspects.push_back(suspect);
+        kept.push_back(n * places);
+    }
+    keep_places(kept, points);
+    std::array<std::vector<float>, 4> slopes;
+    for (int step = 0; step <= steps && !suspects.empty(); ++step) {
+        gradients_at(evaluator, tape, points, slopes);
+        kept.clear();
+        std::vector<Suspect> left;
+        for (std::size_t k = 0; k < suspects.size(); ++k)
+            if (step_in(slopes, k * places, step, boxes[suspects[k].number], thin, suspects[k],
+                        points)) {
+                kept.push_back(k * places);
+                left.push_back(suspects[k]);
+            }
+        keep_places(kept, points);
+        suspects = std::move(left);
+    }
+    for (const Suspect &suspect : suspects)
+        if (suspect.nearest <= nearer * suspect.first)
+            seen[suspect.number] = suspect.solid ? Seen::MaySolid : Seen::MayEmpty;
+    return seen;
+}
+
+void slopes_in(Evaluator &evaluator, const cpu::ShortTape &tape, const Extent &box,
+               std::array<std::vector<float>, 4> &slopes) {
+    Points points;
+    add_places(box, points);
+    gradients_at(evaluator, tape, points, slopes);
+}
+
+} // namespace fathom::mesh

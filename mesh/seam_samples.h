@@ -1,0 +1,28 @@
+// Which boxes are worth a search for seams (seams.h), by samples: nothing is proved by them. Most boxes
+// that ranges do not decide hold surface, or are only loosely known.
+#pragma once
+
+#include "mesh/field.h"
+
+#include <span>
+
+namespace fathom::mesh {
+
+// A box between two corners.
+struct Extent {
+    Point lo{}, hi{};
+};
+
+// What samples in a box say: that it has surface or is far from any, or that it may be solid but for
+// gaps, or empty but for sheets.
+enum class Seen : std::uint8_t { NoSeam, MaySolid, MayEmpty };
+
+// `thin`: of slabs, as in seam_in. The boxes share the runs of the tape, which holds in all of them.
+std::vector<Seen> look_for_seams(Evaluator &evaluator, const cpu::ShortTape &tape,
+                                 std::span<const Extent> boxes, double thin);
+
+// The slopes at those samples, of one box.
+void slopes_in(Evaluator &evaluator, const cpu::ShortTape &tape, const Extent &box,
+               std::array<std::vector<float>, 4> &slopes);
+
+} // namespace fathom::mesh
