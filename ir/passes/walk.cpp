@@ -91,9 +91,11 @@ namespace {
 
 struct Copier {
     Graph &graph;
-    Substitution done;
-    bool points;   // whether a Point is among the replaced
-    bool any_kind; // something else than Points and Vars is replaced
+    const Substitution &replaced;
+    bool points;             // whether a Point is among the replaced
+    bool any_kind;           // something else than Points and Vars is replaced
+    Substitution done;       // begins with the replaced
+    Substitution of_loops{}; // copies of loops that are replaced, for their other values
 
     // Whether nothing below the node can have been replaced, as far as `reads` tells.
     bool untouched(NodeId id) const {
@@ -115,7 +117,7 @@ struct Copier {
                 continue;
             }
             const std::size_t before = stack.size();
-            for (NodeId arg : graph.args(id))
+            for (NodeId arg : graph.args(gives_another_value(id) ? graph.arg(id, 0) : id))
                 if (!done.contains(arg)) stack.push_back(arg);
             if (stack.size() > before) continue;
             stack.pop_back();
@@ -125,9 +127,27 @@ struct Copier {
         return done.at(root);
     }
 
+    // A Loop stands for its first value. What replaces that says nothing of its other values, which
+    // stay those of the loop.
+    bool gives_another_value(NodeId id) const {
+        return graph[id].op == Op::LoopResult && replaced.contains(graph.arg(id, 0));
+    }
+
+    NodeId with_other_loop(NodeId id) {
+        const NodeId loop = graph.arg(id, 0);
+        if (!of_loops.contains(loop)) {
+            const NodeId copy = remade(loop);
+            of_loops.emplace(loop, copy);
+        }
+        const Node node = graph[id];
+        const NodeId copy = of_loops.at(loop);
+        return copy == loop ? id : graph.make(node.op, node.type, {copy}, node.payload);
+    }
+
     NodeId remade(NodeId id) {
         const Node node = graph[id];
         if (node.count == 0) return id;
+        if (gives_another_value(id)) return with_other_loop(id);
         std::vector<NodeId> args;
         bool changed = false;
         for (NodeId arg : graph.args(id)) {
@@ -142,7 +162,7 @@ struct Copier {
 
     bool touches(const std::vector<NodeId> &parts) {
         if (any_kind) {
-            Copier probe{graph, done, points, any_kind};
+            Copier probe{graph, replaced, points, any_kind, done};
             return std::any_of(parts.begin(), parts.end(),
                                [&](NodeId id) { return probe.copy(id) != id; });
         }
@@ -159,7 +179,7 @@ struct Copier {
         const Loop old = graph.loop(id);
         const std::vector<NodeId> parts = body_of(old);
         if (!touches(parts)) return id;
-        Copier inside{graph, done, points, any_kind};
+        Copier inside{graph, replaced, points, any_kind, done};
         Loop made = old;
         made.index = inside.done[old.index] = graph.fresh_var(Type::Int);
         for (NodeId &var : made.vars) {
@@ -182,7 +202,7 @@ NodeId substitute(Graph &graph, NodeId root, const Substitution &map) {
 }
 
 NodeId substitute(Graph &graph, NodeId root, const Substitution &map, std::size_t &visited) {
-    Copier copier{graph, map, false, false};
+    Copier copier{graph, map, false, false, map};
     for (const auto &[from, to] : map) {
         copier.points |= graph[from].op == Op::Point;
         copier.any_kind |= graph[from].op != Op::Point && graph[from].op != Op::Var;

@@ -99,3 +99,37 @@ TEST_CASE("what is neither proved nor refuted is assumed") {
         CHECK(error_codes(stated("0.3 * p.y + " + meets + " + 0.01 * " + unseen, 2.2)).empty());
     }
 }
+
+// Parts of a field are looked at apart. A loop stands for its first value there, and its others are
+// read beside it.
+TEST_CASE("a stated bound is looked into where a loop has several values") {
+    const driver::Compilation c = compiled(R"(
+fn ns(p: vec2) -> float {
+  let i = floor(p)
+  let f = fract(p)
+  let low = mix(hash(i), hash(i + vec2(1, 0)), f.x)
+  mix(low, mix(hash(i + vec2(0, 1)), hash(i + vec2(1, 1)), f.x), f.y)
+}
+fn octave(at: vec2) -> float {
+  let uv = vec2(ns(at))
+  var wv = 1 - abs(sin(uv))
+  wv.x
+}
+fn waves(p: vec3) -> float {
+  var freq = 0.4
+  var amp = 0.4
+  var uv = vec2(p.x * 0.75, p.z)
+  var h = 0.0
+  for i in 0..3 {
+    let d = octave(uv * freq) + octave(uv + 3)
+    h += d * amp
+    uv *= 2
+    freq *= 1.9
+  }
+  p.y - h
+}
+implicit(waves, within: aabb([-1, -1, -1], [1, 1, 1]), lipschitz: 30)
+)");
+    CHECK(error_codes(c).empty());
+    CHECK(fact(c).lipschitz_sup <= 30);
+}

@@ -214,6 +214,20 @@ TEST_CASE("substitution enters folds, and gives the copy variables of its own") 
     CHECK(substitute(g, inner, {{g.fresh_var(Type::Float), x}}) == inner);
 }
 
+TEST_CASE("what replaces a fold stands for its first value alone") {
+    Graph g;
+    const NodeId x = g.component(g.point(), 0), y = g.component(g.point(), 1);
+    const NodeId sum = loop(g, g.integer(4), x, y),
+                 iterations = g.make(Op::LoopResult, Type::Float, {sum}, 1),
+                 root = g.add(sum, g.mul(g.number(100), iterations));
+    test::Reference eval(g);
+    eval.point = {1, 2, 0};
+    CHECK(eval.number(substitute(g, root, {{sum, g.number(7)}})) == 7 + 100 * 4);
+    // What else is replaced is so in the other values, too: x, 60 added, ends by the condition.
+    const NodeId both = substitute(g, root, {{sum, g.number(7)}, {y, g.number(60)}});
+    CHECK(eval.number(both) == 7 + 100 * 3);
+}
+
 TEST_CASE("substitution is deep but not recursive") {
     Graph g;
     const NodeId p = g.point();
