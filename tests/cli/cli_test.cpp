@@ -432,7 +432,7 @@ TEST_CASE("no name and no -D steers the terminal or adds a line to what is said"
     CHECK(lines_of("fathom check " + two, 1).exit == 0);
     CHECK(lines_of("fathom check 'none" + nasty + "'", 1).exit == 3);
     CHECK(lines_of("fathom check " + two + "x", 1).exit == 3);
-    CHECK(lines_of("fathom check 'bad\x1b[2J.sdf'", 4).exit == 1);
+    CHECK(lines_of("fathom check 'bad\x1b[2J.sdf'", 9).exit == 1);
     CHECK(lines_of("fathom check good.sdf -D 'r=\x1b[31mred\n'", 1).exit == 2);
     CHECK(lines_of("fathom check good.sdf -D 'r\x1b[31m\r\n=2'", 1).exit == 2);
     CHECK(lines_of("fathom check good.sdf -D '\x1b[31m\n'", 1).exit == 2);
