@@ -168,25 +168,15 @@ Growth FarOut::upper_of_both(const Growth &a, const Growth &b) const {
     return out;
 }
 
-Growth FarOut::sum(const Growth &a, const Growth &b) const {
+Growth FarOut::together(const Growth &a, const Growth &b, bool added) const {
     if (a.by == 0) return b;
     if (b.by == 0) return a;
     if (!a.known() || !b.known()) return {};
     Growth x = a, y = b;
     shorten(x.power, 1), shorten(y.power, 1);
     Growth out = upper_of_both(x, y);
-    out.by = up(up(x.by * ratio(x, out), 2) + up(y.by * ratio(y, out), 2));
-    return std::isfinite(out.by) ? out : Growth{};
-}
-
-Growth FarOut::greater(const Growth &a, const Growth &b) const {
-    if (a.by == 0) return b;
-    if (b.by == 0) return a;
-    if (!a.known() || !b.known()) return {};
-    Growth x = a, y = b;
-    shorten(x.power, 1), shorten(y.power, 1);
-    Growth out = upper_of_both(x, y);
-    out.by = std::max(up(x.by * ratio(x, out), 2), up(y.by * ratio(y, out), 2));
+    const double of_x = up(x.by * ratio(x, out), 2), of_y = up(y.by * ratio(y, out), 2);
+    out.by = added ? up(of_x + of_y) : std::max(of_x, of_y);
     return std::isfinite(out.by) ? out : Growth{};
 }
 

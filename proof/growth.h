@@ -47,8 +47,8 @@ class FarOut {
 
     double most(const Growth &a) const;  // infinity where it grows
     double least(const Growth &a) const; // 0 where it falls
-    Growth sum(const Growth &a, const Growth &b) const;
-    Growth greater(const Growth &a, const Growth &b) const; // of both
+    Growth sum(const Growth &a, const Growth &b) const { return together(a, b, true); }
+    Growth greater(const Growth &a, const Growth &b) const { return together(a, b, false); }
     // The one of two bounds that tells more: that which falls faster, if it is not far above.
     Growth lesser(const Growth &a, const Growth &b) const;
     // Of two numbers of the same sign, at least: of their sum.
@@ -57,6 +57,7 @@ class FarOut {
     Growth exponential(const Growth &least, double rate, bool falls) const;
 
   private:
+    Growth together(const Growth &a, const Growth &b, bool added) const;
     Growth upper_of_both(const Growth &a, const Growth &b) const;
     // |a| over |b|, at most.
     double ratio(const Growth &a, const Growth &b) const;

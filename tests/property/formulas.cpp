@@ -314,25 +314,7 @@ class Formula : public Chance {
 } // namespace
 
 TEST_CASE("a formula is refused, or is as flat as proved") {
-    const int scenes = effort(250), seed = test::seed();
-    int accepted = 0, wrong = 0;
-    long pairs = 0;
-    for (int i = 0; i < scenes; ++i) {
-        Formula random(std::uint64_t(seed) * 1'000'003u + std::uint64_t(i));
-        const std::string text = random.scene();
-        const bool show = std::getenv("FATHOM_SHOW") != nullptr;
-        if (show) std::printf("%d:\n%s", i, text.c_str());
-        std::fflush(stdout);
-        const Verdict verdict = judge(text, random, 3000);
-        accepted += verdict.accepted;
-        pairs += verdict.pairs;
-        wrong += !verdict.wrong.empty();
-        if (show) std::printf("%s\n", verdict.accepted ? "taken" : verdict.code.c_str());
-        if (!verdict.wrong.empty())
-            std::printf("WRONG %d: %s\n%s", i, verdict.wrong.c_str(), text.c_str());
-        std::fflush(stdout);
-    }
-    std::printf("%d of %d accepted, %ld pairs\n", accepted, scenes, pairs);
-    CHECK(wrong == 0);
-    CHECK(accepted > scenes / 6);
+    const Judged judged = judge_scenes<Formula>(effort(250), 3000);
+    CHECK(judged.wrong == 0);
+    CHECK(judged.accepted > judged.scenes / 6);
 }

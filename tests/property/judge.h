@@ -216,4 +216,30 @@ inline Verdict judge(const std::string &text, Chance &random, int pairs) {
     return out;
 }
 
+struct Judged {
+    int scenes = 0, accepted = 0, wrong = 0;
+};
+// So many scenes that a `Random`, a Chance with a `scene()`, writes.
+template <class Random> Judged judge_scenes(int scenes, int pairs) {
+    Judged out{.scenes = scenes};
+    const bool show = std::getenv("FATHOM_SHOW") != nullptr;
+    long compared = 0;
+    for (int i = 0; i < scenes; ++i) {
+        Random random(std::uint64_t(seed()) * 1'000'003u + std::uint64_t(i));
+        const std::string text = random.scene();
+        if (show) std::printf("%d:\n%s", i, text.c_str());
+        std::fflush(stdout);
+        const Verdict verdict = judge(text, random, pairs);
+        out.accepted += verdict.accepted;
+        compared += verdict.pairs;
+        out.wrong += !verdict.wrong.empty();
+        if (show) std::printf("%s\n", verdict.accepted ? "taken" : verdict.code.c_str());
+        if (!verdict.wrong.empty())
+            std::printf("WRONG %d: %s\n%s", i, verdict.wrong.c_str(), text.c_str());
+        std::fflush(stdout);
+    }
+    std::printf("%d of %d accepted, %ld pairs\n", out.accepted, scenes, compared);
+    return out;
+}
+
 } // namespace fathom::test
