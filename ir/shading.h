@@ -188,8 +188,8 @@
 // all, by which at most a distance was divided): distances to fractals are such, and hardly anywhere
 // change their sign. So a ray has hit where `nearing` samples in a row are within its tolerance, each
 // nearer than the one before, which a ray that passes an edge has seldom; and a light is covered by
-// what is much nearer to the way to it than the light is wide. In all other scenes the sign alone
-// decides.
+// what is much nearer to the way to it than the light is wide, and
+// nothing is taken for a film. In all other scenes the sign alone decides.
 //
 // UNDECIDED: shaded where the ray came to, as what it is nearest to.
 // MISS: color = background_function(dir); without one `background`.

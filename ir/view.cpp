@@ -228,7 +228,6 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
         frame.hi = vec_of(all.hi) + margin;
     }
     frame.unit_slope = scene.unit_slope;
-    frame.films = scene.films;
     double bound = 1;
     bool estimated = false;
     for (const ShapeFact &fact : scene.facts) {
@@ -236,6 +235,7 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
         if (std::isfinite(fact.lipschitz_sup)) bound = std::max(bound, fact.lipschitz_sup);
     }
     frame.estimate = estimated ? bound : 0;
+    frame.films = scene.films && !estimated;
     return frame;
 }
 
