@@ -319,6 +319,24 @@ static std::optional<Value> override_value(Interpreter &ev, const Override &o, c
     return std::nullopt;
 }
 
+// The range is told as it is written: in degrees where it is.
+static std::string written_range(const Interpreter &ev, const File &ast, const lang::Param &param,
+                                 const ir::Param &p) {
+    if (!param.low || !param.high) return fmt::format("{}..{}", p.lo[0], p.hi[0]);
+    return std::string(
+        text(ev.sources, join(ast.exprs[*param.low].span, ast.exprs[*param.high].span)));
+}
+static std::string outside_range(const Interpreter &ev, const File &ast, const lang::Param &param,
+                                 const ir::Param &p, const Override &o) {
+    std::string message = fmt::format("-D {}={} is outside its range {}", o.name, o.text,
+                                      written_range(ev, ast, param, p));
+    const bool plain = o.text.find_first_not_of("+-.0123456789") == std::string::npos;
+    if (p.unit == "deg" && plain)
+        message +=
+            fmt::format("; {0} without a unit are radians, write -D {1}={0}deg", o.text, o.name);
+    return message;
+}
+
 void declare_param(Interpreter &ev, const File &ast, const lang::Param &param,
                    std::uint32_t frame) {
     ir::Param p;
@@ -405,8 +423,7 @@ void declare_param(Interpreter &ev, const File &ast, const lang::Param &param,
             inside = inside && v->num[std::size_t(i)] >= p.lo[std::size_t(i)] &&
                      v->num[std::size_t(i)] <= p.hi[std::size_t(i)];
         if (!inside) {
-            ev.usage_errors.push_back(fmt::format("-D {}={} is outside its range {}..{}", o.name,
-                                                  o.text, p.lo[0], p.hi[0]));
+            ev.usage_errors.push_back(outside_range(ev, ast, param, p, o));
             continue;
         }
         p.value = fill(*v);

@@ -148,3 +148,13 @@ TEST_CASE("the manual page and each completion have all commands and options") {
             CHECK((line.starts_with(".TH ") || line.starts_with(".S") || line.starts_with(".TP") ||
                    line.starts_with(".B ") || line.starts_with(".I ")));
 }
+
+TEST_CASE("a value outside its range is told with the range as it is written") {
+    const ScratchFolder folder;
+    folder.write("turned.sdf",
+                 "param turn = 30deg in -90deg..90deg\nbox([1, 1, 2]).rotate(turn)\n");
+    const auto turned = shell(folder, "fathom check turned.sdf -D turn=95");
+    CHECK(turned.exit == 2);
+    CHECK(contains(turned.err, "range -90deg..90deg; 95 without a unit are radians"));
+    CHECK(shell(folder, "fathom check turned.sdf -D turn=85deg").exit == 0);
+}

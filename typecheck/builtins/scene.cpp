@@ -242,11 +242,20 @@ void add_scene_builtins(std::vector<Builtin> &table) {
          {"occlusion_reach", true},
          {"classic", true}},
         lighting_call,
-        "how the lights act; `fill` is a light at the eye, `occlusion_reach` how far "
-        "`ambient_occlusion` "
-        "looks for what closes a place in, and `classic` turns off what the thesis's Phong "
-        "lighting has "
-        "not: the fill, ambient light that is cooler from above, and highlights that bend");
+        "how the lights act. `ambient` (0.18): light from everywhere; `ambient_occlusion` (0.6): "
+        "how "
+        "much of it a place that is closed in loses, 0 to 1; `occlusion_reach`: how far that "
+        "looks, "
+        "in units; `shadow_darkness` (0.75): how much of a light a shadow takes, 0 to 1; "
+        "`soft_shadows` (0.02): half the angle that a light fills as seen from the scene, in "
+        "radians, "
+        "so that edges are wider the farther off what casts the shadow is, and 0 is hard; "
+        "`specular_intensity` (0.4): how bright highlights are; `fill` (0.08): a light at the eye "
+        "that casts no shadow; `skip: true`: colours without any light; `classic: true`: plain "
+        "Phong, "
+        "as in the thesis, without the fill, with ambient light alike from everywhere, and "
+        "highlights "
+        "that are clamped");
     add("background", {{"color"}}, background_call,
         "a colour, or a function of the ray's direction");
     add("render", {{"max_steps", true}, {"epsilon", true}, {"far", true}, {"time", true}},
