@@ -132,6 +132,19 @@ std::array<bool, 3> to_one_period(const Periods &periods, Cell &whole) {
     return shifted;
 }
 
+// From the one period that is searched to the domain.
+void to_domain(const Periods &periods, const std::array<bool, 3> &shifted, const Cell &domain,
+               FieldBound &found) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double at = found.where[i], period = periods.period[i];
+        if (!shifted[i] || domain.p[i].contains(at)) continue;
+        const double turns = at < domain.p[i].lo ? std::ceil((domain.p[i].lo - at) / period)
+                                                 : std::floor((domain.p[i].hi - at) / period);
+        for (auto *point : {&found.where, &found.side_a, &found.side_b})
+            (*point)[i] += turns * period;
+    }
+}
+
 // A domain that is its own mirror image is cut down to the part where coordinates are not below 0,
 // as far as the field is as steep on both sides; true where its values there are the others
 // negated.
@@ -155,6 +168,18 @@ bool keep_half(const Tape &tape, Cell &whole, const Zone *zone) {
         if (centred(i)) try_axes({i == 0, i == 1, i == 2}, i);
     if (!halved && centred(0) && centred(1) && centred(2)) try_axes({true, true, true}, 0);
     return negated;
+}
+
+// A hull of both sides of a step holds what neither of them comes near. Of the points beside the
+// cell, too: it may lie on one side alone.
+void look_at_sides(Machine &machine, const Cell &cell, const Cell &whole, FieldBound &found) {
+    if (!found.came_near || found.trouble != Trouble::Singular) return;
+    Cell about = cell;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double more = 1e-6 * std::max(1.0, cell.p[i].magnitude());
+        about.p[i] = meet(cell.p[i] + Interval(-more, more), whole.p[i]);
+    }
+    found.each_side = machine.norm_by_ways(about, infinity) < infinity;
 }
 
 // May products leave single precision where rays go, of a field without powers and exponentials? In
@@ -251,14 +276,16 @@ FieldBound search_cells(Flattening &context, const Ranges &ranges, const Tape &t
             (width <= 1e-7 * size || (endless && top.depth > 60) || machine.work() > 4 * limit)) {
             machine.run(cell);
             out.lipschitz = infinity;
-            out.value = hull(settled_value, value);
             out.trouble = machine.trouble();
             out.at_infinity = endless;
             if (machine.cause()) out.cause = context.graph[machine.cause()].op;
             out.where = centre;
-            if (!endless)
+            out.came_near = width <= 1e-7 * size;
+            if (!endless && out.trouble == Trouble::Jump)
                 find_sides(tape, ranges, out, std::max(1e-5 * size, width), periods.reads, whole,
                            zone);
+            if (asks_ways) look_at_sides(machine, cell, whole, out);
+            to_domain(periods, shifted, domain.box, out);
             out.value = Interval::everything();
             return out;
         }

@@ -42,6 +42,8 @@ struct FieldBound {
     bool too_large = false;   // the field was cut off while flattening
     std::optional<Op> cause;  // the first operation in trouble
     std::array<double, 3> where{};
+    bool came_near = false; // no cell about `where` that can be told from it has a bound
+    bool each_side = false; // … but each way of the choices in it has one, by itself
     std::array<double, 3> side_a{}, side_b{}; // of a jump: two near points and the values there
     double value_a = 0, value_b = 0;
     bool known_sides = false; // there are such points

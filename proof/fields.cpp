@@ -319,6 +319,10 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                 d->help("begin its range above 0, as in `in 0.001..1`");
             return;
         }
+        if (!b.came_near || b.each_side) {
+            report_unplaced(id, b, blamed, what, cause);
+            return;
+        }
         if (Diagnostic *d = report_at(id, blamed, Code::FieldSingular,
                                       what + " is undefined or infinitely steep near " +
                                           point_text(b.where, dims)))

@@ -324,7 +324,7 @@ bool Prover::report_division(ShapeId id, const FieldBound &bound, const Blamed &
     if (!d) return true;
     const std::string keep = "keep it off 0, as with `max(…, 0.001)`";
     if (reads.point) {
-        d->note("it is 0 at some points, and the field is evaluated everywhere")
+        d->note("that it is 0 nowhere is not seen, and the field is evaluated everywhere")
             .help(keep + ", or leave those points out, as in `.within(ball(2) - tube(Y, 0.1))`");
         return true;
     }
@@ -335,6 +335,28 @@ bool Prover::report_division(ShapeId id, const FieldBound &bound, const Blamed &
                                         : ", by a param's range"))
         .help(keep + (reads.time ? "" : ", or begin the param's range further in"));
     return true;
+}
+
+// What is singular nowhere that the search came to: it may be so for intervals alone.
+void Prover::report_unplaced(ShapeId id, const FieldBound &bound, const Blamed &blamed,
+                             const std::string &what, const std::string &cause) {
+    const bool leaf = scene.shapes[id].kind == ShapeKind::Leaf;
+    Diagnostic *d = report_at(id, blamed, Code::LipschitzUnbounded,
+                              "no bound on the slope of " + what + " is found near " +
+                                  point_text(bound.where, scene.shapes[id].dims));
+    if (!d) return;
+    const std::string assume = leaf ? std::string("or ") + state_a_bound : "or limit it";
+    if (bound.each_side)
+        d->note("a step or a choice has a border there; each of its sides has a bound, but that " +
+                cause + " does not happen on the border itself is not seen")
+            .help("where it is cells that meet there let `repeat` make them, as in "
+                  "`s.repeat([1, 0, 0])`, " +
+                  assume);
+    else
+        d->note("that " + cause +
+                " does not happen there is not seen: the search ended before it "
+                "came down to a place")
+            .help("choose a smaller region, " + assume);
 }
 
 Diagnostic *Prover::report_at(ShapeId id, const Blamed &blamed, Code code, std::string message) {

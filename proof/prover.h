@@ -197,6 +197,8 @@ struct Prover {
     std::optional<std::string> divides_by_0(ir::ShapeId id);
     bool report_division(ir::ShapeId id, const FieldBound &bound, const Blamed &blamed,
                          const std::string &what); // false: not said here
+    void report_unplaced(ir::ShapeId id, const FieldBound &bound, const Blamed &blamed,
+                         const std::string &what, const std::string &cause);
     void report_field(ir::ShapeId id, const FieldBound &bound, const std::string &what);
     void test_estimate(ir::ShapeId id, ir::NodeId field, double estimate); // assumed.cpp
     // What is proved of a field whose bound the user states, where that is no more. Else the bound

@@ -192,3 +192,20 @@ TEST_CASE("a blend's weight that grows without limit wants a region") {
     CHECK(
         !compiled("blend(box(2), sphere(1), p => p.y).within(ball(2))\n").diagnostics.has_errors());
 }
+
+TEST_CASE("a refusal names no singular place that is none") {
+    const driver::Compilation c = compiled("fn f(p: vec3) -> float {\n"
+                                           "  let q = (p.xz + 1.5) % 3 - 1.5\n"
+                                           "  length(q) - 0.35 - 0.02 * cos(16 * atan(q.y, q.x)) * "
+                                           "smoothstep(0.05, 0.3, length(q))\n}\n"
+                                           "implicit(f, within: everywhere)\n");
+    for (const Diagnostic &d : c.diagnostics.items()) {
+        INFO(d.message);
+        CHECK(d.code != Code::FieldSingular);
+    }
+    // As `repeat` writes the cells, which the help names, it is proved.
+    CHECK(!compiled("fn f(p: vec3) -> float = length(p.xz) - 0.35 - 0.02 * cos(16 * atan(p.z, "
+                    "p.x)) * smoothstep(0.05, 0.3, length(p.xz))\n"
+                    "implicit(f, within: everywhere).repeat([3, 0, 3])\n")
+               .diagnostics.has_errors());
+}

@@ -97,6 +97,43 @@ TEST_CASE("division by a length is singular at the origin, and not away from it"
     CHECK(root.trouble == proof::Trouble::Singular);
 }
 
+TEST_CASE("what is singular between both sides of a step alone is told from a singular place") {
+    Scenery s;
+    Graph &g = s.g;
+    // An angle about the middle of each cell, far from the border, on which its hull holds all.
+    NodeId q = g.sub(
+        g.make(Op::Mod, {g.add(s.p, g.splat(s.n(1.5), Type::Vec3)), g.splat(s.n(3), Type::Vec3)}),
+        g.splat(s.n(1.5), Type::Vec3));
+    NodeId u = g.component(q, 0), v = g.component(q, 1),
+           r = g.make(Op::Length, {g.make(Op::Make, Type::Vec2, {u, v})});
+    NodeId wave = s.cos(g.mul(s.n(16), g.make(Op::Atan2, {v, u})));
+    auto inside = [&](NodeId from) { return g.make(Op::Smoothstep, {s.n(0.05), s.n(0.3), from}); };
+    auto b = s.bound(g.sub(r, g.mul(g.mul(s.n(0.02), wave), inside(r))), cube(4));
+    CHECK(std::isinf(b.lipschitz));
+    CHECK(b.trouble == proof::Trouble::Singular);
+    CHECK(b.came_near);
+    CHECK(b.each_side);
+    // A root of a maximum is singular on one side of the border.
+    auto root = s.bound(s.call(Op::Sqrt, g.make(Op::Max, {s.x, s.n(0)})), cube(2));
+    CHECK(root.trouble == proof::Trouble::Singular);
+    CHECK_FALSE(root.each_side);
+    // 1/x beside 0, where its hull holds as much, is singular on both sides.
+    auto pole = s.bound(g.div(s.n(1), g.make(Op::Min, {s.call(Op::Abs, s.x), s.n(1)})), cube(2));
+    CHECK(pole.trouble == proof::Trouble::Singular);
+    CHECK(pole.came_near);
+    CHECK_FALSE(pole.each_side);
+}
+
+TEST_CASE("a singular place is told within the region, whichever period it was found in") {
+    Scenery s;
+    auto b = s.bound(s.call(Op::Sqrt, s.sin(s.x)),
+                     {{Interval(20, 30), Interval(-1, 1), Interval(-1, 1)}});
+    CHECK(b.trouble == proof::Trouble::Singular);
+    CHECK(b.where[0] >= 20);
+    CHECK(b.where[0] <= 30);
+    CHECK(std::sin(b.where[0]) < 1e-6);
+}
+
 TEST_CASE("a field that steepens without limit says so") {
     Scenery s;
     auto b = s.bound(s.g.mul(s.x, s.x));
