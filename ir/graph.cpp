@@ -161,6 +161,7 @@ NodeId Graph::make(Op op, Type type, std::span<const NodeId> args, std::uint32_t
     assert(info(op).arity < 0 ? !args.empty()
                               : args.size() == static_cast<std::size_t>(info(op).arity));
     assert(op != Op::Const);
+    assert(op != Op::LoopResult || nodes_[args[0]].op == Op::Loop);
     if (info(op).rule == TypeRule::Same && op != Op::Transpose)
         for ([[maybe_unused]] NodeId arg : args) assert(this->type(arg) == type);
     if (const NodeId known = simplified(*this, op, type, args, payload)) return known;

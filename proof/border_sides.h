@@ -58,6 +58,8 @@ struct Canonical {
     std::optional<NodeId> read_of(const ir::Node &node, NodeId index);
 
     NodeId rewritten(NodeId id, const ir::Node &node, int depth);
+    NodeId loop_of_others(NodeId loop, bool exactly, int depth);
+    std::map<std::pair<NodeId, bool>, NodeId> loops{};
 
     // One component, written as it is computed but for exact numbers: what tells numbers apart has
     // this for its arguments (exact.h).

@@ -75,10 +75,24 @@ NodeId Canonical::of(NodeId id, int depth) {
     return out;
 }
 
+// A Loop stands for its first value, in whose place another expression may be. Its other values are
+// read from a loop all the same.
+NodeId Canonical::loop_of_others(NodeId loop, bool exactly, int depth) {
+    if (const auto it = loops.find({loop, exactly}); it != loops.end()) return it->second;
+    const ir::Node node = graph[loop];
+    std::vector<NodeId> args;
+    for (NodeId a : std::vector<NodeId>(graph.args(loop).begin(), graph.args(loop).end()))
+        args.push_back(exactly ? exact_argument(a, depth + 1) : of(a, depth + 1));
+    const NodeId made = graph.make(node.op, node.type, args, node.payload);
+    loops[{loop, exactly}] = made;
+    return made;
+}
+
 NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
     std::vector<NodeId> args;
     for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
-        args.push_back(border && tells_apart[node.op] && graph[a].type != ir::Type::Int
+        args.push_back(node.op == Op::LoopResult ? loop_of_others(a, false, depth + 1)
+                       : border && tells_apart[node.op] && graph[a].type != ir::Type::Int
                            ? exact_argument(a, depth + 1)
                            : of(a, depth + 1));
     if (node.op == Op::Mix)
@@ -173,8 +187,9 @@ NodeId Canonical::as_computed(NodeId id, int component, int depth) {
     const bool parted = ir::info(node.op).rule == ir::TypeRule::Same && !mixes[node.op];
     std::vector<NodeId> args;
     for (NodeId a : std::vector<NodeId>(graph.args(id).begin(), graph.args(id).end()))
-        args.push_back(parted ? exact(a, ir::is_vector(graph[a].type) ? component : 0, depth)
-                              : exact_argument(a, depth));
+        args.push_back(node.op == Op::LoopResult ? loop_of_others(a, true, depth)
+                       : parted ? exact(a, ir::is_vector(graph[a].type) ? component : 0, depth)
+                                : exact_argument(a, depth));
     if (failed) return component_of(graph, id, component);
     if (parted) return graph.make(node.op, ir::Type::Float, args, node.payload);
     return component_of(graph, graph.make(node.op, node.type, args, node.payload), component);

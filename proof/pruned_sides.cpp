@@ -35,11 +35,20 @@ NodeId PrunedSides::pruned(NodeId id) {
     std::vector<NodeId> args;
     bool changed = false;
     for (NodeId arg : std::vector<NodeId>(graph_.args(id).begin(), graph_.args(id).end())) {
-        args.push_back(of(arg));
+        args.push_back(node.op == Op::LoopResult ? loop_of_others(arg) : of(arg));
         changed = changed || args.back() != arg;
     }
     if (const auto is = decided(node, args)) return *is;
     return changed ? formed(graph_.make(node.op, node.type, args, node.payload)) : id;
+}
+
+// A Loop stands for its first value; its other values are not what that is.
+NodeId PrunedSides::loop_of_others(NodeId loop) {
+    const ir::Node node = graph_[loop];
+    std::vector<NodeId> args;
+    for (NodeId arg : std::vector<NodeId>(graph_.args(loop).begin(), graph_.args(loop).end()))
+        args.push_back(of(arg));
+    return graph_.make(node.op, node.type, args, node.payload);
 }
 
 NodeId PrunedSides::formed(NodeId made) {

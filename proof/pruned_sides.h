@@ -30,6 +30,7 @@ class PrunedSides {
 
   private:
     NodeId pruned(NodeId id);
+    NodeId loop_of_others(NodeId loop);
     std::optional<NodeId> decided(const ir::Node &node, const std::vector<NodeId> &args);
     std::optional<NodeId> compared(const ir::Node &node, const std::vector<NodeId> &args);
     std::optional<NodeId> by_range(const ir::Node &node, const std::vector<NodeId> &args);

@@ -209,3 +209,22 @@ TEST_CASE("a refusal names no singular place that is none") {
                     "implicit(f, within: everywhere).repeat([3, 0, 3])\n")
                .diagnostics.has_errors());
 }
+
+// Where a border is entered its first value is a whole number, which has no other values.
+TEST_CASE("a step of a loop's first value leaves the loop its other values") {
+    const std::string turns = "fn f(p: vec3) -> float {\n"
+                              "  var b = p.y\n"
+                              "  var a = p.x\n"
+                              "  for i in 0..300 {\n"
+                              "    b = 0.997 * b + 0.001 * sin(a)\n"
+                              "    a = a + 0.003 * b\n"
+                              "  }\n"
+                              "  let i = floor(a)\n"
+                              "  let u = a - i\n  ",
+                      end = "\n}\nimplicit(f, within: ball(2))\n";
+    const auto accepted = [&](const char *field) {
+        return !compiled(turns + field + end).diagnostics.has_errors();
+    };
+    CHECK(accepted("0.1 * mix(hash(i) * b, hash(i + 1) * b, u * u * (3 - 2 * u))"));
+    CHECK_FALSE(accepted("0.1 * mix(hash(i) * b, hash(i + 1) * a, u * u * (3 - 2 * u))"));
+}
