@@ -8,6 +8,7 @@
 #include "base/ids.h"
 #include "ir/scene.h"
 #include "proof/growth.h"
+#include "proof/rules.h"
 #include "proof/tape.h"
 #include "proof/ways.h"
 
@@ -40,6 +41,7 @@ struct Ranges {
     };
     std::vector<Cached> caches;
     Work *work = nullptr; // of all machines together
+    Rules rules;          // of endless cells; tests weaken one (rules.h)
 };
 // Of params and time all that the scene allows, or the present values at these times (prove.h).
 // Reads the images and grids, which takes steps off `work`.

@@ -30,17 +30,24 @@ struct FarStep {
         return machine.value(in.args[arg], size(arg) == 1 ? 0 : c);
     }
 
+    double rule(Rule which) const { return machine.ranges_.rules[which]; }
+    Growth by_rule(const Growth &a, Rule which) const {
+        return rule(which) == 1 ? a : multiple(a, rule(which));
+    }
+
     Far times_of(const Far &a, const Far &b) const {
         Far v;
         v.most = product(a.most, b.most, true), v.least = product(a.least, b.least, false);
-        v.slope = out.sum(product(b.most, a.slope, true), product(a.most, b.slope, true));
+        v.slope = out.sum(product(b.most, a.slope, true),
+                          by_rule(product(a.most, b.slope, true), Rule::FarProduct));
         v.relative = out.sum(a.relative, b.relative);
         v.sign = a.sign * b.sign;
         return v;
     }
     Far plus(const Far &a, const Far &b) const {
         Far v;
-        v.most = out.sum(a.most, b.most), v.slope = out.sum(a.slope, b.slope);
+        v.most = out.sum(a.most, b.most);
+        v.slope = out.sum(a.slope, by_rule(b.slope, Rule::FarSum));
         if (a.sign != 0 && a.sign == b.sign) {
             v.sign = a.sign, v.least = FarOut::least_sum(a.least, b.least);
             v.relative = out.greater(a.relative, b.relative);
@@ -48,7 +55,7 @@ struct FarStep {
         }
         for (const auto &[x, y] : {std::pair(a, b), std::pair(b, a)}) { // the greater decides
             if (x.least.by <= 0 || !y.most.known()) continue;
-            const double share = out.most(over(y.most, x.least));
+            const double share = out.most(over(y.most, x.least)) * rule(Rule::FarDifference);
             if (!(share < 1)) continue;
             v.sign = x.sign, v.least = product(x.least, {down(1 - share, 2)}, false);
             break;
@@ -77,13 +84,14 @@ struct FarStep {
         v.most = to_power(e > 0 ? a.most : a.least, e, true);
         v.least = to_power(e > 0 ? a.least : a.most, e, false);
         const Growth derived = to_power(e >= 1 ? a.most : a.least, e - 1, true);
-        v.slope = multiple(product(derived, a.slope, true), up(std::fabs(e)));
-        v.relative = multiple(a.relative, up(std::fabs(e)));
+        const double by = up(std::fabs(e)) * rule(Rule::FarPower);
+        v.slope = multiple(product(derived, a.slope, true), by);
+        v.relative = multiple(a.relative, by);
         return v;
     }
     Far quotient(const Far &a, const Far &b) const {
         Far v = times_of(a, power(b, -1, b.sign));
-        v.slope = product(v.most, b.relative, true);
+        v.slope = by_rule(product(v.most, b.relative, true), Rule::FarQuotient);
         v.slope = out.sum(over(a.slope, b.least), v.slope);
         return v;
     }
@@ -91,14 +99,15 @@ struct FarStep {
         Far v;
         v.sign = 1;
         v.relative = multiple(a.slope, up(rate));
-        if (a.sign < 0) v.most = out.exponential(a.least, down(rate), true);
+        if (a.sign < 0)
+            v.most = by_rule(out.exponential(a.least, down(rate), true), Rule::FarExponential);
         if (a.sign > 0) v.least = out.exponential(a.least, down(rate), false);
         v.slope = product(v.most, v.relative, true);
         return v;
     }
     Far logarithm(const Far &a, double rate, Interval x) const {
         Far v;
-        v.slope = multiple(a.relative, up(rate));
+        v.slope = multiple(a.relative, up(rate) * rule(Rule::FarLogarithm));
         // log(t) <= 8 t^(1/8) / e
         if (x.lo >= 1) v.most = multiple(to_power(a.most, 0.125, true), up(2.9431 * rate));
         return v;
@@ -106,18 +115,19 @@ struct FarStep {
     // f(v) with f(0) = 0 and |f'| <= 1 …
     Far no_steeper(const Far &a) const {
         Far v;
-        v.most = a.most, v.slope = a.slope;
+        v.most = a.most, v.slope = by_rule(a.slope, Rule::FarFunction);
         return v;
     }
     // … or with f' of at most that size, where v's is `least`
     Far flatter(const Far &a, const Growth &derived) const {
         Far v;
-        v.slope = product(derived, a.slope, true);
+        v.slope = by_rule(product(derived, a.slope, true), Rule::FarFunction);
         return v;
     }
     Far chosen(const Far &a, const Far &b) const { // by component one, or a mean
         Far v;
-        v.most = out.greater(a.most, b.most), v.slope = out.greater(a.slope, b.slope);
+        v.most = out.greater(a.most, b.most);
+        v.slope = out.greater(a.slope, by_rule(b.slope, Rule::FarChoice));
         return v;
     }
     Far extreme(const Far &a, const Far &b) const {
@@ -130,7 +140,8 @@ struct FarStep {
     }
     Far mean(const Far &a, const Far &b, const Far &t) const {
         Far v = chosen(a, b);
-        v.slope = out.sum(v.slope, product(t.slope, out.sum(a.most, b.most), true));
+        const Growth turned = product(t.slope, out.sum(a.most, b.most), true);
+        v.slope = out.sum(v.slope, by_rule(turned, Rule::FarMean));
         return v;
     }
     Far of_parts(int c) const {
@@ -144,7 +155,8 @@ struct FarStep {
         for (std::size_t arg = 0; arg < in.args.size(); ++arg)
             for (int c = 0; c < size(arg); ++c) {
                 const Far part = squared(of(arg, c)), own = of(arg, c);
-                const Growth slope = first ? own.slope : out.sum(v.slope, own.slope);
+                const Growth slope =
+                    first ? own.slope : out.sum(v.slope, by_rule(own.slope, Rule::FarLength));
                 v = first ? part : plus(v, part);
                 v.slope = slope, first = false;
             }
@@ -311,7 +323,7 @@ double FarStep::slope_of_products(int c, Row &row) const {
     for (const auto &[a, b, a_at, b_at] : factors(c)) {
         const Far x = machine.far(a, a_at), y = machine.far(b, b_at);
         const double by_a = out.most(product(y.most, x.slope, true)),
-                     by_b = out.most(product(x.most, y.slope, true));
+                     by_b = out.most(by_rule(product(x.most, y.slope, true), Rule::FarProduct));
         const Interval va = machine.value(a, a_at), vb = machine.value(b, b_at);
         for (std::size_t k = 0; k < 3; ++k)
             row[k] = row[k] + within(vb * machine.row(a, a_at)[k], by_a) +

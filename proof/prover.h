@@ -52,6 +52,7 @@ struct Prover {
         : scene(s), diagnostics(d), options(o),
           graph(s.graph), work{o.work, o.stop}, flattening{s.graph, work},
           ranges(ranges_of(s, work, o.times)) {
+        ranges.rules = o.rules;
         flattening.ranges = &ranges;
         flattening.cache = o.cache ? o.cache : &of_this_proof;
     }

@@ -1,5 +1,6 @@
 #include "proof/question.h"
 
+#include <algorithm>
 #include <bit>
 #include <span>
 #include <utility>
@@ -51,9 +52,17 @@ void Question::add(const Budget &budget) {
 
 // The ranges of what the field reads, by the numbers that it has in the words.
 void Question::add_inputs(const ir::Content &content, const Ranges &ranges, NodeId field) {
+    const auto is_weakened = [](double factor) { return factor != 1; };
     const auto add_all = [&](const auto &intervals) {
         for (const Interval &one : intervals) add(one);
     };
+    own_.rules = ranges.rules;
+    add(static_cast<std::uint32_t>(std::ranges::count_if(ranges.rules.factor, is_weakened)));
+    for (std::size_t rule = 0; rule < ranges.rules.factor.size(); ++rule)
+        if (is_weakened(ranges.rules.factor[rule])) {
+            add(static_cast<std::uint32_t>(rule));
+            add(ranges.rules.factor[rule]);
+        }
     if (context_.graph.reads(field).time) add(own_.time = ranges.time);
     for (std::uint32_t param : content.params)
         add_all(own_.params.emplace_back(ranges.params[param]));

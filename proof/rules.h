@@ -29,6 +29,17 @@ enum class Rule : std::size_t {
     Round,
     Detour,
     Curvature,
+    FarProduct, // of endless cells (lipschitz.md, 2.34): what the second factor's slope adds
+    FarQuotient,
+    FarPower,
+    FarSum,
+    FarDifference,
+    FarExponential,
+    FarLogarithm,
+    FarFunction,
+    FarMean,
+    FarLength,
+    FarChoice,
     Count
 };
 

@@ -4,6 +4,8 @@
 #include "build.h"
 #include "ir/lower/lower.h"
 #include "ir/passes/verify.h"
+#include "tests/property/rule_cases.h"
+#include "tests/support/reference_eval.h"
 #include "tests/support/second_check.h"
 #include "tests/support/slopes.h"
 #include "tests/support/spans.h"
@@ -19,16 +21,6 @@ using namespace fathom::test;
 using proof::Rule;
 
 namespace {
-
-struct Case {
-    std::string name;
-    Rule rule;
-    std::function<ShapeId(Scenery &)> build;
-    double attained; // sampled over proved, at least
-    double reach = 3;
-    bool tighten = false; // the rule is how a bound is made less
-    double x = 0;         // of the middle of what is sampled
-};
 
 // The case as it is marched, with what the rule adds times `factor`; what is proved of it.
 double prove(const Case &test, double factor, Scenery &s) {
@@ -437,14 +429,47 @@ TEST_CASE("half of an assumed bound is found out") {
     }
 }
 
+// In double precision: single precision would see little of what is far out.
+TEST_CASE("each term of a slope far out is needed") {
+    for (const FarCase &test : far_cases()) {
+        Scenery s;
+        const NodeId field = test.field(s);
+        const auto bound = [&](double factor) {
+            proof::Work work;
+            proof::Flattening context{s.g, work};
+            proof::Ranges ranges = proof::ranges_of(s.scene, work);
+            ranges.rules.factor[std::size_t(test.rule)] = factor;
+            return proof::bound_field(context, ranges, field, {{}, nullptr}, {}).lipschitz;
+        };
+        Reference reference(s.scene);
+        const auto value = [&](double y) {
+            reference.point = {0, y, 0};
+            return reference.number(field);
+        };
+        double steepest = 0;
+        for (double y = test.from; y < 30 * test.from; y *= 1.001) {
+            const double way = 1e-5 * y;
+            steepest = std::max(steepest, std::fabs(value(y + way) - value(y)) / way);
+        }
+        const double proved = bound(1), halved = bound(0.5);
+        std::cout << "far out: " << test.name << ": proved " << proved << ", halved " << halved
+                  << ", seen " << steepest << "\n";
+        INFO(test.name);
+        CHECK(proved >= steepest * (1 - 1e-4));
+        CHECK(proved <= 2 * steepest);
+        CHECK(halved < steepest * (1 - 1e-3));
+    }
+}
+
 TEST_CASE("each rule has a case of its own") {
     for (std::size_t rule = 0; rule < std::size_t(Rule::Count); ++rule) {
         std::vector<Case> all = cases();
         for (const std::vector<Case> &more : {cuts(), bends()})
             all.insert(all.end(), more.begin(), more.end());
         INFO("rule " << rule);
-        CHECK(std::any_of(all.begin(), all.end(),
-                          [&](const Case &one) { return std::size_t(one.rule) == rule; }));
+        const std::vector<FarCase> far = far_cases();
+        const auto is_own = [&](const auto &one) { return std::size_t(one.rule) == rule; };
+        CHECK((std::ranges::any_of(all, is_own) || std::ranges::any_of(far, is_own)));
     }
 }
 
