@@ -130,6 +130,10 @@ double Machine::component_norm(Slot s, int component) const {
         else if (in.op == Op::Add || in.op == Op::Sub) {
             arg = norm_[in.args[0]] == 0 ? 1 : 0;
             if (norm_[in.args[1 - arg]] != 0) return norm_[s];
+            const auto is_odd = [&](Slot of) {
+                return odd_[tape_.first[of] + std::uint32_t(tape_.size[of] == 1 ? 0 : component)];
+            };
+            if (is_odd(in.args[arg]) != 0 && is_odd(s) == 0) return infinity; // it jumps now
         } else if (in.op != Op::Neg)
             return norm_[s];
         s = in.args[arg];
