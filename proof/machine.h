@@ -79,6 +79,15 @@ Raised either(const Raised &a, const Raised &b); // what holds of both
 // A bound on the spectral norm of every matrix whose rows lie in `rows`.
 double spectral_norm(const Row *rows, int count);
 
+// A row of a matrix, its length at most, and the sign of its weight; 0: not known.
+struct Weighed {
+    const Row *grad = nullptr;
+    double norm = 0;
+    int sign = 0;
+};
+// How long a sum of the rows is at most, whose weights together have a length of 1; at most `known`.
+double norm_of_weighed(const Weighed *rows, int count, double known);
+
 class Machine {
   public:
     // bends: bounds second derivatives too (machine_bend.cpp).

@@ -140,6 +140,47 @@ double Machine::component_norm(Slot s, int component) const {
     }
 }
 
+// Of w_1 g_1 + w_2 g_2 + … with w of length 1: the root of the greatest eigenvalue of the matrix of
+// what w_i w_j (g_i . g_j) may add, for which any positive vector gives a bound (Collatz and Wielandt).
+double norm_of_weighed(const Weighed *rows, int count, double known) {
+    constexpr int most_rows = 8, rounds = 12;
+    double longest = 0;
+    for (int i = 0; i < count; ++i) longest = std::max(longest, rows[i].norm);
+    if (known == infinity) return known; // it may jump
+    if (count > most_rows || !(longest * (1 + 1e-6) < known)) return known;
+    double matrix[most_rows][most_rows], at[most_rows], next[most_rows], largest = 0;
+    for (int i = 0; i < count; ++i) {
+        matrix[i][i] = up(rows[i].norm * rows[i].norm);
+        largest = std::max(largest, matrix[i][i]);
+        at[i] = 1;
+        for (int j = 0; j < i; ++j) {
+            Interval product;
+            for (std::size_t k = 0; k < 3; ++k) product += (*rows[i].grad)[k] * (*rows[j].grad)[k];
+            const double most = up(rows[i].norm * rows[j].norm);
+            product = meet(product, Interval(-most, most));
+            const int sign = rows[i].sign * rows[j].sign;
+            matrix[i][j] = matrix[j][i] = sign > 0   ? std::max(product.hi, 0.0)
+                                          : sign < 0 ? std::max(-product.lo, 0.0)
+                                                     : product.magnitude();
+        }
+    }
+    if (largest == 0) return 0;
+    double best = up(known * known);
+    for (int round = 0; round < rounds; ++round) {
+        double most = 0, sum = 0;
+        for (int i = 0; i < count; ++i) {
+            double row = 0;
+            for (int j = 0; j < count; ++j) row = up(row + up(matrix[i][j] * at[j]));
+            next[i] = row;
+            most = std::max(most, up(row / at[i]));
+            sum += row;
+        }
+        best = std::min(best, most);
+        for (int i = 0; i < count; ++i) at[i] = next[i] / sum + 1e-6; // above 0
+    }
+    return std::min(known, up(std::sqrt(best)));
+}
+
 void Step::corner() {
     const Interval zero_at(0.0);
     const int m = size(0);
@@ -147,6 +188,7 @@ void Step::corner() {
     for (int c = 0; c < m; ++c) greatest = std::max(greatest, value(0, c).lo);
     Interval outside, most(-infinity), squares[4];
     Row rows[4], g{};
+    Weighed weighed[4];
     int used = 0, last = 0;
     for (int c = 0; c < m; ++c) {
         const Interval v = value(0, c);
@@ -170,6 +212,7 @@ void Step::corner() {
                 weight.lo = ir::rounding::down(std::sqrt(own.lo / (own.lo + others.hi)), 8);
             if (others.lo > 0) weight.hi = up(std::sqrt(own.hi / (own.hi + others.lo)), 8);
         }
+        weighed[used] = {&grad(0, c), machine.component_norm(in.args[0], c), 1};
         rows[used++] = grad(0, c);
         last = c;
         g = sum(g, scaled(weight, grad(0, c)));
@@ -178,17 +221,29 @@ void Step::corner() {
     set(0, sqrt(outside) + min(most, zero_at), g);
     double norms = std::min(norm(0), spectral_norm(rows, used));
     if (used == 1) norms = std::min(norms, machine.component_norm(in.args[0], last));
+    if (used > 1 && most.hi <= 0) { // a mean
+        double longest = 0;
+        for (int i = 0; i < used; ++i) longest = std::max(longest, weighed[i].norm);
+        norms = std::min(norms, longest);
+    }
+    if (used > 1) norms = norm_of_weighed(weighed, used, norms);
     finish(norms, any_odd);
 }
 
 void Step::length() {
     Interval length;
     Row columns[16];
+    Weighed weighed[16];
     int rows = 0;
     double norms = together();
     for (int a = 0; a < int(in.args.size()); ++a) {
         for (int c = 0; c < size(a); ++c) {
-            length += square(value(a, c));
+            const Interval v = value(a, c);
+            const int sign = v.lo >= 0 ? 1 : v.hi <= 0 ? -1 : 0;
+            length += square(v);
+            if (rows < 16)
+                weighed[rows] = {&grad(a, c), machine.component_norm(in.args[std::size_t(a)], c),
+                                 sign};
             if (rows < 16)
                 columns[rows++] = grad(a, c);
             else
@@ -201,6 +256,7 @@ void Step::length() {
         norms = norm(0);
     else if (rows <= 16)
         norms = std::min(norms, spectral_norm(columns, rows));
+    if (rows > 1 && rows <= 16) norms = norm_of_weighed(weighed, rows, norms);
     Row g;
     for (std::size_t j = 0; j < 3; ++j) {
         double column = 0;
