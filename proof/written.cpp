@@ -3,6 +3,7 @@
 // docs/lipschitz.md, 2.12.
 #include "ir/passes/inline.h"
 #include "ir/passes/walk.h"
+#include "proof/ordered.h"
 #include "proof/prover.h"
 
 #include <algorithm>
@@ -42,8 +43,9 @@ FieldBound Prover::bound_written(NodeId field, const Domain &domain, const Budge
                has_powers = singular && out.cause == Op::Pow;
     if (!jumps && !singular) return out;
     work.take(max_nodes_written);
-    const ir::WithoutCalls written = ir::without_loops(graph, field, max_nodes_written);
+    ir::WithoutCalls written = ir::without_loops(graph, field, max_nodes_written);
     if (!written.all) return out;
+    written.root = with_extremes_for_choices(graph, written.root);
     if (written.root != field) {
         flattening.written[field] = written.root;
         const FieldBound again = bound_field(flattening, ranges, field, domain, budget);

@@ -1,6 +1,7 @@
 // A random search over what is joined by a length of numbers of known signs, as rounded unions are
-// (lipschitz.md, 2.36). Whatever the checker accepts is measured (judge.h). FATHOM_EFFORT=10 is the long
-// form.
+// (lipschitz.md, 2.36), and over numbers that `if` keeps in order, as the least and the second of
+// several (2.37), some in the wrong order. Whatever the checker accepts is measured (judge.h).
+// FATHOM_EFFORT=10 is the long form.
 #include "judge.h"
 
 #include <catch2/catch.hpp>
@@ -62,10 +63,72 @@ class Corner : public Chance {
     }
 };
 
+class Ordered : public Chance {
+  public:
+    using Chance::Chance;
+
+    std::string scene() {
+        const bool cells = often(), three = pick(3) == 0, by_square = pick(4) == 0;
+        std::string out = "implicit(p => {\n", turns = "  ", ends = "  ";
+        out += cells ? "  let n = floor(p.xz)\n  let u = p.xz - n\n" : "";
+        const std::string far = of({"8", "9", "1e3"});
+        out += "  var d1 = " + (pick(8) == 0 ? "9.5" : far) + "\n  var d2 = " + far + "\n";
+        out += three ? "  var d3 = " + far + "\n" : "";
+        if (cells)
+            out += "  for j in -1..=1 { for i in -1..=1 {\n    let g = vec2(i, j)\n"
+                   "    let o = 0.5 + " +
+                   of({"0", "0.1", "0.2"}) +
+                   " * sin(tau * vec2(hash(n + g), hash(n + g + 7)))\n    let r = g + o - u\n";
+        else
+            out += "  for i in 0..5 {\n    let r = p - vec3(cos(" + between(1, 3) +
+                   " * i), 0.3 * i - 0.6, sin(2 * i))\n";
+        out += by_square ? "    let d = dot(r, r)\n" : "    let d = length(r)\n";
+        out += kept(three) + (cells ? "  } }\n" : "  }\n");
+        const std::string a = by_square ? "sqrt(d1)" : "d1", b = by_square ? "sqrt(d2)" : "d2",
+                          c = three ? (by_square ? "sqrt(d3)" : "d3") : b;
+        switch (pick(4)) {
+        case 0: out += "  p.y + 0.3 * (" + b + " - " + a + ")\n"; break;
+        case 1: out += "  " + c + " - " + a + " - 0.1\n"; break;
+        case 2: out += "  0.5 * (" + a + " + " + c + ") - 0.4\n"; break;
+        default: out += "  " + b + " - 0.5\n"; break;
+        }
+        return out + "}, within: ball(2))\n";
+    }
+
+  private:
+    std::string kept(bool three) {
+        const std::string less = of({"<", "<", "<="}), wrong = pick(5) == 0 ? "d" : "d1";
+        if (three)
+            return "    if d " + less + " d1 {\n      d3 = d2\n      d2 = " + wrong +
+                   "\n      d1 = d\n    } else if d " + less +
+                   " d2 {\n      d3 = d2\n      d2 = d\n    } else if d < d3 { d3 = d }\n";
+        switch (pick(4)) {
+        case 0:
+            return "    if d " + less + " d1 {\n      d2 = " + wrong +
+                   "\n      d1 = d\n    } else { d2 = min(d2, d) }\n";
+        case 1:
+            return "    if d " + less +
+                   " d2 {\n      d2 = d\n      if d2 < d1 {\n"
+                   "        d2 = d1\n        d1 = " +
+                   (wrong == "d" ? "0.9 * d" : "d") + "\n      }\n    }\n";
+        default:
+            return "    if d " + less + " d1 {\n      d2 = " + wrong +
+                   "\n      d1 = d\n    } else if d " + of({"<", "<="}) + " d2 { d2 = d }\n";
+        }
+    }
+};
+
 } // namespace
 
 TEST_CASE("a length of numbers of known signs is no steeper than proved") {
     const Judged judged = judge_scenes<Corner>(effort(80), 400);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes * 3 / 4);
+}
+
+TEST_CASE("numbers that are kept in order are refused, or do not jump") {
+    const Judged judged = judge_scenes<Ordered>(effort(60), 400);
+    CHECK(judged.wrong == 0);
+    CHECK(judged.accepted > judged.scenes / 3);
+    CHECK(judged.accepted < judged.scenes);
 }
