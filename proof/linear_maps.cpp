@@ -348,9 +348,10 @@ std::optional<LinearMap> turned_scalars(Graph &graph, NodeId vector,
         if (reader.failed || !part || !scalars.take(part, 1)) return {};
     }
     if (scalars.waves.empty() || scalars.parts.size() < 2) return {};
-    const auto change = turning(graph, scalars.rows, scalars.waves, varies);
+    const bool still = std::none_of(scalars.waves.begin(), scalars.waves.end(), varies);
+    const auto change = still ? std::nullopt : turning(graph, scalars.rows, scalars.waves, varies);
     const auto norm = rows_norm(graph, scalars.rows);
-    if (!change || !norm) return {};
+    if ((!still && !change) || !norm) return {};
     const NodeId of =
         graph.make(Op::Make, ir::vector_type(int(scalars.parts.size())), scalars.parts);
     return LinearMap{of, norm->norm, false, scalars.waves, change};

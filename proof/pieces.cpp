@@ -111,6 +111,7 @@ class PieceReader {
         do {
             next_ = 0;
             way_.clear();
+            order_.clear();
             of_ = of;
             std::vector<Affine> rows = rows_of(of);
             if (mode_.lengths) expand_lengths(rows);
@@ -138,6 +139,7 @@ class PieceReader {
     std::vector<Decision> taken_;
     std::size_t next_ = 0;
     std::map<std::pair<NodeId, int>, int> way_; // of this piece
+    std::map<std::pair<NodeId, NodeId>, int> order_;
     std::map<NodeId, NodeId> called_;
     std::map<NodeId, std::vector<NodeId>> measured_; // by length: what it is the length of
 
@@ -146,6 +148,34 @@ class PieceReader {
         if (!fresh) return it->second;
         if (next_ == taken_.size()) taken_.push_back({0, many});
         return it->second = taken_[next_++].way;
+    }
+    // Is a < b? The same wherever it is met.
+    bool is_less(NodeId a, NodeId b) {
+        const auto [it, fresh] = order_.try_emplace({a, b}, 0);
+        if (fresh) {
+            if (next_ == taken_.size()) taken_.push_back({0, 2});
+            it->second = taken_[next_++].way;
+        }
+        return it->second == 0;
+    }
+    // Which of two numbers is the lesser: as they are compared, if they are. Where they are equal both
+    // are as steep.
+    int lesser(NodeId a, int ai, NodeId b, int bi) {
+        a = graph_.component(a, ai), b = graph_.component(b, bi);
+        if (order_.contains({b, a}) && !order_.contains({a, b})) return is_less(b, a) ? 1 : 0;
+        return is_less(a, b) ? 0 : 1;
+    }
+    // The argument that a Select has.
+    int chosen(NodeId select) {
+        const NodeId condition = graph_.arg(select, 0);
+        const Op op = graph_[condition].op;
+        if (!varies(condition)) return way(select, 0, 2) + 1;
+        if ((op == Op::Less || op == Op::LessEqual) &&
+            graph_.type(graph_.arg(condition, 0)) == ir::Type::Float) {
+            const NodeId a = graph_.arg(condition, 0), b = graph_.arg(condition, 1);
+            return (op == Op::Less ? is_less(a, b) : !is_less(b, a)) ? 1 : 2;
+        }
+        return way(condition, 0, 2) + 1;
     }
     bool to_next() {
         while (!taken_.empty() && taken_.back().way + 1 == taken_.back().many) taken_.pop_back();
@@ -205,8 +235,7 @@ class PieceReader {
         if (node.op == Op::Step) return double(way(id, i, 2));
         if (node.op == Op::Mod && whole[graph_[graph_.arg(id, 0)].op] && arg(1) == 2.0)
             return double(way(id, i, 2));
-        if (node.op == Op::Select && varies(graph_.arg(id, 0)))
-            return arg(way(graph_.arg(id, 0), 0, 2) == 0 ? 1 : 2);
+        if (node.op == Op::Select && varies(graph_.arg(id, 0))) return arg(chosen(id));
         return {};
     }
 
@@ -278,13 +307,17 @@ class PieceReader {
             return add(first, arg(1), node.op == Op::Add ? 1 : -1);
         }
         case How::Product: return scaled(id, i, depth);
-        case How::OneOfTwo: return arg(way(id, i, 2));
+        case How::OneOfTwo: {
+            const auto component_of = [&](NodeId of) {
+                return ir::is_vector(graph_[of].type) ? i : 0;
+            };
+            const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
+            const int least = lesser(a, component_of(a), b, component_of(b));
+            return arg(node.op == Op::Min ? least : 1 - least);
+        }
         case How::OneOfThree: return arg(way(id, i, 3));
         case How::Size: return add({}, arg(0), way(id, i, 2) == 0 ? 1 : -1);
-        case How::Chosen: {
-            const NodeId condition = graph_.arg(id, 0);
-            return arg(way(varies(condition) ? condition : id, 0, 2) == 0 ? 1 : 2);
-        }
+        case How::Chosen: return arg(chosen(id));
         case How::Still: return {};
         case How::AsItself: return arg(0);
         case How::Remainder: return varies(graph_.arg(id, 1)) ? part(id, i) : arg(0);

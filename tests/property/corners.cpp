@@ -1,7 +1,8 @@
 // A random search over what is joined by a length of numbers of known signs, as rounded unions are
-// (lipschitz.md, 2.36), and over numbers that `if` keeps in order, as the least and the second of
-// several (2.37), some in the wrong order. Whatever the checker accepts is measured (judge.h).
-// FATHOM_EFFORT=10 is the long form.
+// (lipschitz.md, 2.36); over numbers that `if` keeps in order, as the least and the second of several
+// (2.37), some in the wrong order; and over loops of folds that swap components by comparing them, and
+// turn by the time (2.7). Whatever the checker accepts is measured (judge.h). FATHOM_EFFORT=10 is the
+// long form.
 #include "judge.h"
 
 #include <catch2/catch.hpp>
@@ -118,7 +119,65 @@ class Ordered : public Chance {
     }
 };
 
+class Swapped : public Chance {
+  public:
+    using Chance::Chance;
+
+    std::string scene() {
+        std::string out = "param k = 0.3 in -1..2\nimplicit(point => {\n  var p = point\n";
+        const bool loop = often();
+        out += loop ? "  for i in 0.." + number(double(2 + pick(4))) + " {\n" : "";
+        for (std::size_t i = 2 + pick(4); i > 0; --i) out += "    " + fold() + "\n";
+        out += loop ? "  }\n" : "";
+        return out + "  " +
+               of({"length(p) - 0.7", "max(abs(p.x), abs(p.y)) - 0.4", "p.x",
+                   "length(max(abs(p) - 0.3, 0))", "0.5 * (p.x + p.y)", "min(p.x, p.y + p.z)"}) +
+               "\n}, within: ball(2))\n";
+    }
+
+  private:
+    // Of two numbers that may be equal on a set with an inside, too.
+    std::string compared(const std::string &a, const std::string &b) {
+        const std::string less = of({" < ", " <= ", " > ", " >= "});
+        switch (pick(5)) {
+        case 0: return "max(" + a + ", 0)" + less + "max(" + b + ", 0)";
+        case 1: return "abs(" + a + ")" + less + "abs(" + b + ")";
+        default: return a + less + b;
+        }
+    }
+    std::string fold() {
+        const std::string two = of({"xy", "xz", "yz"}), a = "p." + two.substr(0, 1),
+                          b = "p." + two.substr(1), back = two.substr(1) + two.substr(0, 1);
+        switch (pick(9)) {
+        case 0: return "p = abs(p) - " + between(0, 0.4);
+        case 1:
+            return "p." + two + " = if " + compared(a, b) + " { p." + back + " } else { p." + two +
+                   " }";
+        case 2: return "if " + a + of({" < ", " <= "}) + b + " { p." + two + " = p." + back + " }";
+        case 3: return "p." + two + " = vec2(max(" + a + ", " + b + "), min(" + a + ", " + b + "))";
+        case 4: return "p." + two + " = vec2(max(" + a + ", " + b + "), max(" + a + ", 0.1))";
+        case 5: {
+            const std::string angle = of({"0.3 + 0.2 * sin(time)", "time", "k", "0.7"});
+            return "p." + two + " = vec2(cos(" + angle + ") * " + a + " + sin(" + angle + ") * " +
+                   b + ", cos(" + angle + ") * " + b + " - sin(" + angle + ") * " +
+                   (pick(6) == 0 ? b : a) + ")";
+        }
+        case 6: return "p." + two + " = rotate2(p." + two + ", k)";
+        case 7:
+            return "p." + two + " = vec2(min(" + a + ", " + b + "), if " + a + " < " + b + " { " +
+                   b + " } else { " + a + " })";
+        default: return "p = p - vec3(" + between(-0.3, 0.3) + ", 0.1, " + between(0, 0.3) + ")";
+        }
+    }
+};
+
 } // namespace
+
+TEST_CASE("folds that swap and turn are no steeper than proved") {
+    const Judged judged = judge_scenes<Swapped>(effort(60), 400);
+    CHECK(judged.wrong == 0);
+    CHECK(judged.accepted > judged.scenes / 2);
+}
 
 TEST_CASE("a length of numbers of known signs is no steeper than proved") {
     const Judged judged = judge_scenes<Corner>(effort(80), 400);
