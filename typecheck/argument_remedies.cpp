@@ -14,6 +14,23 @@ namespace fathom::typecheck {
 
 // -- arguments -----------------------------------------------------------------------------------
 
+std::optional<Span> behind_call(const Interpreter &ev, Span last) {
+    const std::string_view all = ev.sources[last.source].text;
+    const std::size_t close = all.find_first_not_of(" \t\n,", last.end);
+    if (close == all.npos || all[close] != ')') return std::nullopt;
+    const auto at = static_cast<std::uint32_t>(close + 1);
+    return Span{last.source, at, at};
+}
+
+Span with_comma(std::span<const Argument> args, std::size_t at, Span callee) {
+    const Span own = whole_argument(args[at]);
+    if (at > 0 && args[at - 1].span.begin >= callee.end)
+        return {own.source, args[at - 1].span.end, own.end};
+    if (at + 1 < args.size() && !args[at + 1].trailing)
+        return {own.source, own.begin, whole_argument(args[at + 1]).begin};
+    return own;
+}
+
 namespace {
 
 constexpr std::pair<std::string_view, std::string_view> argument_names[] = {
@@ -82,7 +99,18 @@ constexpr std::pair<std::string_view, std::string_view> argument_names[] = {
     {"majorRadius", "major"},
     {"minorRadius", "minor"},
     {"depth", "height"},
-    {"vertices", "points"}};
+    {"vertices", "points"},
+    {"color", "material"},
+    {"colour", "material"},
+    {"radius", "major"},
+    {"thickness", "minor"},
+    {"thick", "minor"},
+    {"tube", "minor"},
+    {"tube_radius", "minor"},
+    {"tubeRadius", "minor"},
+    {"position", "direction"},
+    {"pos", "direction"},
+    {"from", "direction"}};
 
 // What only other ways of making shapes need.
 constexpr std::array<std::string_view, 14> needless = {
@@ -105,15 +133,6 @@ std::string_view method_for(std::string_view argument) {
     return {};
 }
 
-// Where the call ends whose last argument this is, before its `)`; nothing where a block follows.
-std::optional<Span> behind_call(const Interpreter &ev, Span last) {
-    const std::string_view all = ev.sources[last.source].text;
-    const std::size_t close = all.find_first_not_of(" \t\n,", last.end);
-    if (close == all.npos || all[close] != ')') return std::nullopt;
-    const auto at = static_cast<std::uint32_t>(close + 1);
-    return Span{last.source, at, at};
-}
-
 // What physically based materials have.
 bool is_gloss(std::string_view name) {
     return name == "roughness" || name == "metallic" || name == "metalness" || name == "gloss" ||
@@ -122,16 +141,6 @@ bool is_gloss(std::string_view name) {
 
 bool has(std::span<const Formal> formals, std::string_view name) {
     return std::ranges::any_of(formals, [&](const Formal &f) { return f.name == name; });
-}
-
-// The argument with the comma that it needs no more.
-Span with_comma(std::span<const Argument> args, std::size_t at, Span callee) {
-    const Span own = whole_argument(args[at]);
-    if (at > 0 && args[at - 1].span.begin >= callee.end)
-        return {own.source, args[at - 1].span.end, own.end};
-    if (at + 1 < args.size() && !args[at + 1].trailing)
-        return {own.source, own.begin, whole_argument(args[at + 1]).begin};
-    return own;
 }
 
 // The axis that an argument's name says: `x`; of a box also `width`, `height`, `depth`.
@@ -165,6 +174,13 @@ bool letters_remedy(Interpreter &ev, std::string_view function, std::span<const 
         fix = {fmt::format("write `{}({})`", function, value), {{whole_argument(first), value}}};
         return true;
     }
+    if (function == "plane" && args.size() == 1) { // `plane(y: -1)`
+        const std::string value =
+            fmt::format("{}, {}", static_cast<char>(letter(letters[0]) - 'x' + 'X'),
+                        source_text(ev, first.span));
+        fix = {fmt::format("write `plane({})`", value), {{whole_argument(first), value}}};
+        return true;
+    }
     if (turns) fix.edits.push_back({callee, "rotate_euler"});
     const auto taken = std::ranges::find_if(formals, [](const Formal &f) {
         return f.vector_size > 0 && f.name != "axis" && f.name != "towards";
@@ -190,102 +206,167 @@ std::string our_argument(std::string_view theirs, std::span<const Formal> formal
 
 } // namespace
 
-Fix remedy_of_arguments(Interpreter &ev, std::string_view function, std::span<const Formal> formals,
-                        std::span<const Argument> args, const std::vector<std::size_t> &unknown,
-                        Span callee) {
-    Fix fix;
-    std::vector<std::size_t> letters, others;
-    const auto axes = std::ranges::count_if(
-        unknown, [&](std::size_t i) { return axis_of(args[i].name->text, function) != ' '; });
-    const bool all_axes = axes == (function == "rectangle" ? 2 : 3);
-    for (std::size_t i : unknown) {
-        const std::string &name = args[i].name->text;
-        const bool is_letter =
-            all_axes ? axis_of(name, function) != ' ' : name == "x" || name == "y" || name == "z";
-        (is_letter ? letters : others).push_back(i);
+namespace {
+
+// The unknown arguments of one call, and what is proposed for them so far.
+class Remedy {
+  public:
+    Remedy(Interpreter &ev, std::string_view function, std::span<const Formal> formals,
+           std::span<const Argument> args, Span callee)
+        : ev_(ev), function_(function), formals_(formals), args_(args), callee_(callee) {}
+
+    Fix of(const std::vector<std::size_t> &unknown) {
+        std::vector<std::size_t> letters, others;
+        const auto axes = std::ranges::count_if(
+            unknown, [&](std::size_t i) { return axis_of(args_[i].name->text, function_) != ' '; });
+        const bool all_axes = axes == (function_ == "rectangle" ? 2 : 3);
+        for (std::size_t i : unknown) {
+            const std::string &name = args_[i].name->text;
+            const bool is_letter = all_axes ? axis_of(name, function_) != ' '
+                                            : name == "x" || name == "y" || name == "z";
+            (is_letter ? letters : others).push_back(i);
+        }
+        if (!letters.empty() &&
+            !letters_remedy(ev_, function_, formals_, args_, letters, callee_, fix_))
+            others.insert(others.begin(), letters.begin(), letters.end());
+        if (function_ == "slab" && slab_between(ev_, args_, unknown, fix_)) return fix_;
+        if (function_ == "cylinder" || function_ == "cone")
+            cone_ = cone_between(ev_, args_, unknown, callee_, fix_);
+        alone_ = others.size() == 1;
+        for (std::size_t i : others)
+            if (!behind(i) && !elsewhere(args_[i].name->text, i)) ours(i);
+        return fix_;
     }
-    std::vector<std::string> proposed; // each of our arguments once
-    const auto is_free = [&](std::string_view ours) {
-        return std::ranges::find(proposed, ours) == proposed.end() &&
+
+  private:
+    void say(std::string help) { fix_.message += fix_.message.empty() ? help : "; " + help; }
+    void leave(std::size_t i) { fix_.edits.push_back({with_comma(args_, i, callee_), ""}); }
+    bool is_free(std::string_view ours) const {
+        return std::ranges::find(proposed_, ours) == proposed_.end() &&
                std::ranges::none_of(
-                   args, [&](const Argument &b) { return b.name && b.name->text == ours; });
-    };
-    if (!letters.empty() && !letters_remedy(ev, function, formals, args, letters, callee, fix))
-        others.insert(others.begin(), letters.begin(), letters.end());
-    const auto say = [&](std::string help) {
-        fix.message += fix.message.empty() ? help : "; " + help;
-    };
-    bool told_gloss = false;
-    for (std::size_t i : others) {
-        const Argument &a = args[i];
+                   args_, [&](const Argument &b) { return b.name && b.name->text == ours; });
+    }
+
+    // `sphere(1, color: red)`, `torus(1, 0.2, axis: Z)`: what is done behind the call.
+    bool behind(std::size_t i) {
+        const Argument &a = args_[i];
         const std::string &name = a.name->text;
-        const std::string_view method =
-            std::ranges::find(no_shapes, function) == no_shapes.end() ? method_for(name) : "";
-        const auto end = method.empty() || args.back().trailing || has(formals, "at")
-                             ? std::nullopt
-                             : behind_call(ev, args.back().span);
-        const bool of_shape = end && (name != "center" || a.value.kind != ValueKind::Bool);
+        const bool is_setting = std::ranges::find(no_shapes, function_) != no_shapes.end();
+        if (is_setting || args_.back().trailing || has(formals_, "at") || has(formals_, "material"))
+            return false;
+        std::string call;
+        const std::string axis = axis_text(ev_, a.value, a.span);
+        if (names_an_axis(name) && lies_along_y(function_) && !axis.empty())
+            call = fmt::format(".orient(Y, {})", axis);
+        else if (const auto method = method_for(name);
+                 !method.empty() && (name != "center" || a.value.kind != ValueKind::Bool))
+            call = fmt::format(".{}({})", method, source_text(ev_, a.span));
+        const auto end = call.empty() ? std::nullopt : behind_call(ev_, args_.back().span);
+        if (!end) return false;
+        leave(i);
+        if (call == ".orient(Y, Y)") {
+            say(fmt::format("it lies along Y as it is: leave `{}` away", name));
+            return true;
+        }
+        say(fmt::format("write `{}` behind it", call));
+        const auto same =
+            std::ranges::find_if(fix_.edits, [&](const Edit &e) { return e.span == *end; });
+        if (same == fix_.edits.end())
+            fix_.edits.push_back({*end, std::move(call)});
+        else
+            same->replacement += call;
+        return true;
+    }
+
+    // What is said otherwise, or set elsewhere.
+    bool elsewhere(const std::string &name, std::size_t i) {
+        const bool camera = function_ == "camera";
         const bool diameter = name == "d" || name == "diameter" || name == "dia";
-        if (of_shape) { // `sphere(1, color: red)`
-            say(fmt::format("write `.{}({})` behind it", method, source_text(ev, a.span)));
-            fix.edits.push_back({with_comma(args, i, callee), ""});
-            std::string call = fmt::format(".{}({})", method, source_text(ev, a.span));
-            const auto same =
-                std::ranges::find_if(fix.edits, [&](const Edit &e) { return e.span == *end; });
-            if (same == fix.edits.end())
-                fix.edits.push_back({*end, std::move(call)});
-            else
-                same->replacement += call;
-        } else if (function == "camera" && (name == "up" || name == "rotation" || name == "roll")) {
+        const bool end = name == "r1" || name == "r2" || name == "d1" || name == "d2";
+        if (camera && (name == "up" || name == "rotation" || name == "roll")) {
             say(fmt::format("a camera stands upright, and looks at a place: leave `{}` away, and "
                             "say `look_at: [0, 0, 0]`",
                             name));
-            if (name == "up") fix.edits.push_back({with_comma(args, i, callee), ""});
-        } else if (function == "camera" && (name == "lens" || name == "zoom" || name == "near" ||
-                                            name == "far" || name == "clip_end")) {
-            say(name == "lens" || name == "zoom"
-                    ? "the angle of view is `fov: 45deg`"
-                    : "a scene is drawn as far as `render(far: …)` says");
-        } else if (function == "light" && name == "type") {
+            if (name == "up") leave(i);
+        } else if (camera && (name == "lens" || name == "zoom")) {
+            say("the angle of view is `fov: 45deg`");
+        } else if (camera && (name == "near" || name == "far" || name == "clip_end")) {
+            say("a scene is drawn as far as `render(far: …)` says");
+        } else if (function_ == "light" && name == "type") {
             say("a light from afar is `sun(direction: …)`");
-        } else if (function == "plane" && (name == "size" || name == "width")) {
+        } else if (function_ == "sun" &&
+                   (name == "angle" || name == "elevation" || name == "azimuth")) {
+            say("where the sun stands is a direction: `sun(direction: [0.4, 1, 0.3])`");
+        } else if (function_ == "plane" && (name == "size" || name == "width")) {
             say("a plane has no end; with one it is `box([10, 0.1, 10])`");
-        } else if (function == "slab" && name.size() == 2 && name[0] >= 'x' && name[0] <= 'z') {
-            if (fix.message.empty())
+        } else if (function_ == "slab" && name.size() == 2 && name[0] >= 'x' && name[0] <= 'z') {
+            if (fix_.message.empty())
                 say(fmt::format("a slab lies round the origin: `slab(1, axis: {})`, moved by "
                                 "`.translate`",
                                 static_cast<char>(name[0] - 'x' + 'X')));
-        } else if (std::ranges::find(needless, name) != needless.end() && !has(formals, "at")) {
+        } else if (std::ranges::find(needless, name) != needless.end() && !has(formals_, "at")) {
             say(fmt::format("shapes are centred and smooth: leave `{}` away", name));
-            fix.edits.push_back({with_comma(args, i, callee), ""});
-        } else if (diameter && has(formals, "radius") && is_free("radius")) {
-            proposed.emplace_back("radius");
-            const std::string value = operand_source(ev, a.span);
-            const bool grouped = value != source_text(ev, a.span);
-            say(fmt::format("write `radius: {} / 2`", value));
-            fix.edits.push_back({a.name->span, "radius"});
-            if (grouped) fix.edits.push_back({{a.span.source, a.span.begin, a.span.begin}, "("});
-            fix.edits.push_back(
-                {{a.span.source, a.span.end, a.span.end}, grouped ? ") / 2" : " / 2"});
-        } else if ((name == "r1" || name == "r2") && has(formals, "radius")) {
-            if (name == "r2" && fix.message.find("capped_cone") != std::string::npos) continue;
-            say("a cone without its tip is `capped_cone(bottom: …, top: …, height: …)`");
-        } else if (function == "material" && is_gloss(name)) {
-            if (std::exchange(told_gloss, true)) continue;
+            leave(i);
+        } else if (const auto rounded = rounded_form(function_, name); !rounded.empty()) {
+            if (std::exchange(rounded_, true)) return true;
+            say(fmt::format("write `{}(…, radius: {})`", rounded, source_text(ev_, args_[i].span)));
+            fix_.edits.push_back({callee_, std::string(rounded)});
+            fix_.edits.push_back({args_[i].name->span, "radius"});
+        } else if (diameter && has(formals_, "radius") && is_free("radius")) {
+            halve(args_[i]);
+        } else if (end && cone_) { // told
+        } else if (end && has(formals_, "radius")) {
+            if (fix_.message.find("capped_cone") == std::string::npos)
+                say("a cone without its tip is `capped_cone(bottom: …, top: …, height: …)`");
+        } else if (function_ == "material" && is_gloss(name)) {
+            if (std::exchange(told_gloss_, true)) return true;
             say(fmt::format("for `{}` there is `exponent`, from 1 (dull) to 1000 (glossy), and "
                             "`specular`, the highlight's colour",
                             name));
-        } else if (name == "within" && function != "within") {
+        } else if (name == "within" && function_ != "within") {
             say("a region stands behind the whole: `.within(ball(3))`");
-        } else if (const std::string ours = our_argument(name, formals);
-                   !ours.empty() && is_free(ours)) {
-            proposed.push_back(ours);
-            say(others.size() == 1 ? fmt::format("did you mean `{}`?", ours)
-                                   : fmt::format("write `{}` for `{}`", ours, name));
-            fix.edits.push_back({a.name->span, ours});
-        }
+        } else
+            return false;
+        return true;
     }
-    return fix;
+
+    void halve(const Argument &a) {
+        proposed_.emplace_back("radius");
+        const std::string value = operand_source(ev_, a.span);
+        const bool grouped = value != source_text(ev_, a.span);
+        say(fmt::format("write `radius: {} / 2`", value));
+        fix_.edits.push_back({a.name->span, "radius"});
+        if (grouped) fix_.edits.push_back({{a.span.source, a.span.begin, a.span.begin}, "("});
+        fix_.edits.push_back({{a.span.source, a.span.end, a.span.end}, grouped ? ") / 2" : " / 2"});
+    }
+
+    // An argument of ours by another name.
+    void ours(std::size_t i) {
+        const std::string &name = args_[i].name->text;
+        const std::string taken = our_argument(name, formals_);
+        if (taken.empty() || !is_free(taken)) return;
+        proposed_.push_back(taken);
+        say(alone_ ? fmt::format("did you mean `{}`?", taken)
+                   : fmt::format("write `{}` for `{}`", taken, name));
+        fix_.edits.push_back({args_[i].name->span, taken});
+    }
+
+    Interpreter &ev_;
+    std::string_view function_;
+    std::span<const Formal> formals_;
+    std::span<const Argument> args_;
+    Span callee_;
+    Fix fix_;
+    std::vector<std::string> proposed_; // each of our arguments once
+    bool told_gloss_ = false, cone_ = false, rounded_ = false, alone_ = false;
+};
+
+} // namespace
+
+Fix remedy_of_arguments(Interpreter &ev, std::string_view function, std::span<const Formal> formals,
+                        std::span<const Argument> args, const std::vector<std::size_t> &unknown,
+                        Span callee) {
+    return Remedy(ev, function, formals, args, callee).of(unknown);
 }
 
 void join_sign_edits(Interpreter &ev, std::span<const Argument> args, Fix &fix) {

@@ -2,6 +2,8 @@
 // that a trial can be undone.
 #include "typecheck/remedies.h"
 
+#include "base/text.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -163,6 +165,32 @@ static bool same_type(Interpreter &ev, Value &old, Value &value) {
     return old.kind == value.kind;
 }
 
+// For a name of the scene that is assigned to, or a part of it.
+static void help_with_let(const Interpreter &ev, const File &ast, const lang::Assign &node,
+                          Diagnostic &d, const std::string &name, const std::vector<Accessor> &path,
+                          const Value &value) {
+    std::string fresh;
+    std::vector<Edit> edits;
+    if (path.empty()) edits = renamed_from(ev, ast, node, name, fresh);
+    if (!fresh.empty())
+        d.help(fmt::format("a scene's names keep their value: give the new value a name of its "
+                           "own, `let {} = …`",
+                           fresh),
+               std::move(edits));
+    else if (path.empty())
+        d.help("a scene's names keep their value: in a loop, shapes count where they stand, a "
+               "list is `[for … { … }]`, and a sum is `fold(list, 0, (a, b) => a + b)`");
+    else if (value.kind != ValueKind::Shape)
+        d.help(fmt::format("a scene's names keep their value: give the new value a name of its "
+                           "own, `let {}2 = …`",
+                           short_name(name)));
+    else if (const auto way = way_of_part(path.front().letters); !way.empty())
+        d.help(fmt::format("what is made does not change: {}", way));
+    else
+        d.help("what is made does not change: a shape is moved by `.translate(…)`, which gives a "
+               "new one");
+}
+
 void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span place,
                 std::uint32_t frame) {
     std::vector<Accessor> path;
@@ -192,6 +220,10 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
     if (!found) {
         Diagnostic &d = report(ev, Code::UnknownName, base.span,
                                fmt::format("nothing here is called `{}`", name->text));
+        if (const auto way = way_from_elsewhere(name->text); !way.empty()) {
+            d.help(std::string(way));
+            return;
+        }
         if (!node.op && path.empty()) {
             const bool in_body = !ev.frames[frame].index;
             d.help(fmt::format("declare it: `let {} = …`, or `var {} = …` where it changes",
@@ -224,21 +256,7 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
             d.help(fmt::format("write `var {}` where it is declared", name->text),
                    {{{declared.source, declared.begin - 4, declared.begin - 1}, "var"}});
         else if (ev.calls.empty() && ev.in_field == 0) {
-            std::string fresh;
-            std::vector<Edit> edits;
-            if (path.empty()) edits = renamed_from(ev, ast, node, name->text, fresh);
-            if (!fresh.empty())
-                d.help(fmt::format("a scene's names keep their value: give the new value a name of "
-                                   "its own, `let {} = …`",
-                                   fresh),
-                       std::move(edits));
-            else if (!path.empty())
-                d.help("what is made does not change: a shape is moved by `.translate(…)`, which "
-                       "gives a new one");
-            else
-                d.help("a scene's names keep their value: in a loop, shapes count where they "
-                       "stand, a list is `[for … { … }]`, and a sum is `fold(list, 0, (a, b) => a "
-                       "+ b)`");
+            help_with_let(ev, ast, node, d, name->text, path, binding.value);
         } else
             d.help("declare it with `var` inside the function");
         if (!is_argument) assign(ev, found->frame, found->slot, poison()); // one cause, one report

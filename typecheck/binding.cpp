@@ -69,6 +69,31 @@ static std::optional<Span> decimal_comma(const Interpreter &ev, std::span<const 
     return std::nullopt;
 }
 
+// `print("r is", r)` as one string.
+static void help_with_prints(const Interpreter &ev, Diagnostic &d, std::span<const Argument> args) {
+    std::vector<Edit> edits;
+    for (std::size_t i = 0; i + 1 < args.size(); ++i) {
+        const Span a = args[i].span, b = args[i + 1].span;
+        if (args[i + 1].name || args[i + 1].trailing || a.source != b.source) return;
+        const std::string_view written = text(ev.sources, a);
+        const bool literal = written.size() > 1 && written.ends_with('"');
+        if (!literal)
+            edits.push_back({{a.source, a.end, b.begin}, " + \" \" + "});
+        else
+            edits.push_back(
+                {{a.source, a.end - 1, b.begin},
+                 written.size() == 2 || written[written.size() - 2] == ' ' ? "\" + " : " \" + "});
+    }
+    d.help("a string shows a value where it is joined to it, by `+`", std::move(edits));
+}
+
+// Two or three numbers.
+static bool is_point(const Interpreter &ev, const Value &v) {
+    if (v.kind == ValueKind::Vec) return true;
+    return v.kind == ValueKind::List && ev.lists[v.id].size() > 1 && ev.lists[v.id].size() < 4 &&
+           is_scalar(ev, ev.lists[v.id][0]);
+}
+
 static void report_too_many(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
                             std::span<const Argument> args, const Argument &first) {
     std::size_t given = 0;
@@ -94,10 +119,19 @@ static void report_too_many(Interpreter &ev, std::string_view name, std::span<co
                    args, [&](const Argument &b) { return !b.name && is_scalar(ev, b.value); })) {
         const Fix fix = remedy_of_row(args, formals[0].vector_size);
         d.help(fix.message, fix.edits);
+    } else if (name == "print" && args[0].value.kind == ValueKind::String) {
+        help_with_prints(ev, d, args);
+    } else if (formals.size() == 1 && formals[0].name == "points" &&
+               std::ranges::all_of(args, [&](const Argument &b) {
+                   return !b.name && !b.trailing && is_point(ev, b.value);
+               })) {
+        const Span row = join(args.front().span, args.back().span);
+        d.help("a list stands in brackets",
+               {{{row.source, row.begin, row.begin}, "["}, {{row.source, row.end, row.end}, "]"}});
     } else if (name == "background")
         d.help("a gradient is a function of the direction: "
                "`background(d => mix(white, skyblue, saturate(d.y)))`");
-    else if (name == "cylinder")
+    else if (name == "cylinder" || name == "cone")
         d.help("a cone without its tip is `capped_cone(bottom, top, height)`");
 }
 
@@ -170,6 +204,24 @@ static void report_order(Interpreter &ev, std::span<const Formal> formals,
     else
         d.help(fmt::format("write `{}: {}`", left, text(ev.sources, a.span)),
                {{{a.span.source, a.span.begin, a.span.begin}, fmt::format("{}: ", left)}});
+}
+
+static bool is_direction(const Formal &formal) {
+    return formal.is_place &&
+           (formal.name == "axis" || formal.name == "normal" || formal.name == "direction");
+}
+
+// `plane(-1)`, `s.mirror(1)`: one number would be a vector of equal parts.
+static void report_number_as_direction(Interpreter &ev, std::string_view name, const Formal &formal,
+                                       std::span<const Argument> args, const Given &given) {
+    Diagnostic &d =
+        report(ev, Code::TypeMismatch, given.span,
+               fmt::format("`{}` of `{}` is a direction, not a number", formal.name, name));
+    if (name == "plane" && args.size() == 1 && !args[0].name) {
+        const std::string written = fmt::format("Y, {}", text(ev.sources, given.span));
+        d.help(fmt::format("a level is `plane({})`", written), {{given.span, written}});
+    } else
+        d.help("the axes are `X`, `Y` and `Z`; any other direction is a vector, `[1, 2, 0]`");
 }
 
 std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_view name,
@@ -262,6 +314,10 @@ std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_vi
     // `light(1, 2, 3)`: one number fills a size, but is no place
     const bool of_user = !ev.modules[ev.current_module].library;
     for (std::size_t i = 0; ok && of_user && i < formals.size(); ++i) {
+        if (is_direction(formals[i]) && bound[i].given && is_scalar(ev, bound[i].value)) {
+            report_number_as_direction(ev, name, formals[i], args, bound[i]);
+            return std::nullopt;
+        }
         const std::size_t first = by_place[i];
         std::size_t end = first;
         while (end < args.size() && !args[end].name && !args[end].trailing &&

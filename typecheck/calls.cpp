@@ -383,7 +383,9 @@ Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::C
                 return poison();
             }
             const std::string near = likely_name(ev, frame, m->name.text, {Use::Called, &object});
-            if (lacking(ev, m->name.text, near)) return poison();
+            if (lacking(ev, m->name.text, near) ||
+                is_foreign_method(ev, object, ast, *m, call, place))
+                return poison();
             Diagnostic &d = report(ev, Code::UnknownMember, m->name.span,
                                    fmt::format("there is no function `{}` for {}", m->name.text,
                                                describe(ev, object)));
@@ -402,6 +404,8 @@ Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::C
                 d.help(fmt::format("did you mean `{}`?", near), {{m->name.span, near}});
             return poison();
         }
+        if (f->kind == ValueKind::Builtin && is_foreign_method(ev, object, ast, *m, call, place))
+            return poison();
         Argument self;
         self.value = object;
         self.span = ast.exprs[m->object].span;

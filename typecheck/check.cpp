@@ -4,6 +4,7 @@
 #include "lang/parse.h"
 #include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
+#include "typecheck/remedies.h"
 
 #include "ir/background.h"
 #include "ir/passes/param_reads.h"
@@ -96,6 +97,15 @@ void add_flat(Interpreter &ev, const Value &v, Span span, std::vector<ir::ShapeI
     shapes.push_back(shape);
 }
 
+// What stands behind an expression, which gets parentheses where operators stand in it.
+static std::vector<Edit> behind(const Interpreter &ev, Span span, std::string call) {
+    if (is_library_place(ev, span)) return {};
+    const bool grouped = operand_source(ev, span) != source_text(ev, span);
+    std::vector<Edit> edits{{{span.source, span.end, span.end}, (grouped ? ")" : "") + call}};
+    if (grouped) edits.push_back({{span.source, span.begin, span.begin}, "("});
+    return edits;
+}
+
 void add_top_level(Interpreter &ev, const Value &v, Span span, std::vector<ir::ShapeId> &shapes) {
     switch (v.kind) {
     case ValueKind::Poison:
@@ -114,7 +124,8 @@ void add_top_level(Interpreter &ev, const Value &v, Span span, std::vector<ir::S
         }
         if (v.size == 2) {
             report(ev, Code::FlatShape, span, "a flat shape has no thickness, so it cannot be seen")
-                .help("make it solid: `.extrude(0.1)` or `.revolve()`");
+                .help("make it solid: `.extrude(0.1)` or `.revolve()`",
+                      behind(ev, span, ".extrude(0.1)"));
             return;
         }
         ev.scene.top_level.push_back({shape_of(v), span});
@@ -142,7 +153,10 @@ void add_top_level(Interpreter &ev, const Value &v, Span span, std::vector<ir::S
     Diagnostic &d =
         report(ev, Code::WrongPlace, span,
                fmt::format("the scene is made of shapes; {} does nothing here", describe(ev, v)));
-    if (v.kind == ValueKind::Closure && parameter_count(ev, v) == 1)
+    if (v.kind == ValueKind::Region && text(ev.sources, span).starts_with("ball("))
+        d.help("a ball that is seen is a `sphere`",
+               {{{span.source, span.begin, span.begin + 4}, "sphere"}});
+    else if (v.kind == ValueKind::Closure && parameter_count(ev, v) == 1)
         d.help("a distance function becomes a shape with `implicit(…)`; any other is called");
     else if (is_function(v))
         d.help("call it: `name(…)`");

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace fathom::typecheck {
@@ -256,6 +257,13 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
     if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Shape &&
         v.kind == ValueKind::Shape && v.size == 2)
         d.help("make it solid with `.extrude(height)` or `.revolve()`");
+    if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Shape2 &&
+        v.kind == ValueKind::Shape)
+        d.help("it has its depth already; a flat shape is `circle(r)`, `rectangle([w, h])` or "
+               "`polygon(points)`",
+               text(ev.sources, place).starts_with("sphere(")
+                   ? std::vector<Edit>{{{place.source, place.begin, place.begin + 6}, "circle"}}
+                   : std::vector<Edit>{});
     if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Int &&
         is_numeric(v))
         d.help("`int(x)` cuts the fraction off");
@@ -265,7 +273,9 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
         (type.items[0].named == lang::TypeName::Shape ||
          type.items[0].named == lang::TypeName::AnyShape)) {
         const auto &items = ev.lists[v.id];
-        if (std::ranges::any_of(items, [&](const Value &x) { return is_scalar(ev, x); }))
+        if (std::ranges::any_of(items, [](const Value &x) { return x.kind == ValueKind::Region; }))
+            d.help("among them is a region, which only cuts: a ball that is seen is a `sphere`");
+        else if (std::ranges::any_of(items, [&](const Value &x) { return is_scalar(ev, x); }))
             d.help("leave the number away; what flows together by it is `smooth_union(0.2, a, b)`");
         else if (std::ranges::any_of(items,
                                      [](const Value &x) { return x.kind == ValueKind::List; }))
@@ -375,6 +385,9 @@ std::optional<ir::NodeId> want_vec_node(Interpreter &ev, const Value &raw, int s
 
 std::optional<ir::NodeId> want_color_node(Interpreter &ev, const Value &v, Span place, What what) {
     const Value c = or_color(vector_of_list(ev, v));
+    if (v.kind == ValueKind::Vec && v.ints && v.size == 3 && !is_library_place(ev, place))
+        warn_of_bytes(ev, place,
+                      std::array{integer(v.num[0]), integer(v.num[1]), integer(v.num[2])});
     if (is_poison(sized(ev, c, place, what))) return std::nullopt;
     if (is_numeric(c) && numeric_type(ev, c) != Type::Bool)
         if (auto color = as_color(ev, c, numeric_type(ev, c))) return to_node(ev, *color);

@@ -368,8 +368,7 @@ static Value eval_member(Interpreter &ev, const File &ast, const lang::Member &m
         return call_value(ev, *f, m.name.text, {&self, 1}, place, m.name.span);
     }
     if (is_numeric(object)) return swizzle(ev, object, m.name.text, m.name.span);
-    report_unknown_member(ev, object, m.name,
-                          {place.source, ast.exprs[m.object].span.end, place.end}, place);
+    report_unknown_member(ev, object, ast, m, place);
     return poison();
 }
 
@@ -414,9 +413,7 @@ static Value eval_unary(Interpreter &ev, const File &ast, const lang::Unary &u, 
         return logical_not(ev, v);
     }
     if (v.kind == ValueKind::Shape) {
-        report(ev, Code::LineContinues, place, "a shape cannot be negated")
-            .help("to cut it out of the shape on the line above, move the `-` to the end of that "
-                  "line; the space around a shape is `complement(s)`");
+        report_negated_shape(ev, place, ast.exprs[u.operand].span);
         return poison();
     }
     return negate(ev, v, place);

@@ -1,6 +1,7 @@
 // Functions of the point: a lambda, a named function, a constant or a cached field becomes one
 // expression of the graph.
 #include "typecheck/interpreter.h"
+#include "typecheck/remedies.h"
 
 #include <fmt/format.h>
 
@@ -28,10 +29,12 @@ static std::optional<Value> numbers_at(Interpreter &ev, const Value &field,
         std::size_t used =
             count < 0 ? 1 : std::min<std::size_t>(static_cast<std::size_t>(count), inputs.size());
         if (count > static_cast<int>(inputs.size())) {
-            report(ev, Code::TypeMismatch, place,
-                   fmt::format("{} wants a function of {}, this one has {} parameters", what,
-                               inputs.size() == 1 ? "the point" : "the point and the normal",
-                               count));
+            Diagnostic &d = report(
+                ev, Code::TypeMismatch, place,
+                fmt::format("{} wants a function of {}, this one has {} parameters", what,
+                            inputs.size() == 1 ? "the point" : "the point and the normal", count));
+            if (count == ir::components(ev.scene.graph[inputs[0]].type))
+                help_with_parts(ev, d, field, place);
             return std::nullopt;
         }
         for (std::size_t i = 0; i < std::max<std::size_t>(used, 1); ++i)
@@ -75,12 +78,15 @@ std::optional<ir::NodeId> apply_field(Interpreter &ev, const Value &field,
         ir::NodeId scalar = to_node(ev, to_float(ev, value));
         return result == Type::Float ? scalar : ev.scene.graph.splat(scalar, result);
     }
-    report(ev, Code::TypeMismatch, place,
-           fmt::format("{} wants a function that gives a {}, this one gives {}", what,
-                       ir::type_name(result), describe(ev, value)))
-        .help(result == Type::Float && ir::is_vector(type)
-                  ? "one number of a vector is its length, `length(p) - 1`, or a part, `p.y`"
-                  : "let the function's last expression give that");
+    Diagnostic &d = report(ev, Code::TypeMismatch, place,
+                           fmt::format("{} wants a function that gives a {}, this one gives {}",
+                                       what, ir::type_name(result), describe(ev, value)));
+    if (result == Type::Float && type == Type::Bool)
+        help_with_condition(ev, d, place);
+    else
+        d.help(result == Type::Float && ir::is_vector(type)
+                   ? "one number of a vector is its length, `length(p) - 1`, or a part, `p.y`"
+                   : "let the function's last expression give that");
     return std::nullopt;
 }
 

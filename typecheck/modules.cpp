@@ -1,6 +1,7 @@
 // Files: the embedded library, imports, the scene's parameters, and the names that are there from
 // the start.
 #include "typecheck/interpreter.h"
+#include "typecheck/remedies.h"
 
 #include "base/text.h"
 #include "lang/parse.h"
@@ -396,21 +397,35 @@ void declare_param(Interpreter &ev, const File &ast, const lang::Param &param,
         for (int i = 0; i < ir::components(p.type); ++i) {
             auto k = static_cast<std::size_t>(i);
             if (p.lo[k] > p.hi[k]) {
-                report(ev, Code::BadArgument,
-                       join(ast.exprs[*param.low].span, ast.exprs[*param.high].span),
-                       "this range ends before it begins");
+                const Span low = ast.exprs[*param.low].span, high = ast.exprs[*param.high].span;
+                const std::string ends[] = {source_text(ev, low), source_text(ev, high)};
+                report(ev, Code::BadArgument, join(low, high), "this range ends before it begins")
+                    .help(fmt::format("write `{}..{}`", ends[1], ends[0]),
+                          {{low, ends[1]}, {high, ends[0]}});
                 return fail();
             }
             if (value.num[k] < p.lo[k] || value.num[k] > p.hi[k]) {
-                report(
+                const bool below = value.num[k] < p.lo[k];
+                const Span end = ast.exprs[below ? *param.low : *param.high].span;
+                const std::string written = source_text(ev, ast.exprs[param.value].span);
+                Diagnostic &d = report(
                     ev, Code::BadArgument, ast.exprs[param.value].span,
                     fmt::format("{} is outside its range {}..{}", value.num[k], p.lo[k], p.hi[k]));
+                if (ir::components(p.type) == 1)
+                    d.help(fmt::format("give a value within it, or let the range {} at {}",
+                                       below ? "begin" : "end", written),
+                           {{end, written}});
                 return fail();
             }
         }
     } else if (p.type == ir::Type::Int) {
+        const Span at = ast.exprs[param.value].span;
+        const double n = value.num[0];
+        const std::string range = n > 0 ? fmt::format("1..{}", std::max(10.0, 2 * n))
+                                        : fmt::format("{}..{}", std::min(-10.0, 2 * n), 10);
         report(ev, Code::ParamRange, param.name.span, "a whole number as a parameter needs a range")
-            .help(fmt::format("write `param {} = {} in 0..10`", p.name, value.num[0]));
+            .help(fmt::format("write `param {} = {} in {}`", p.name, value.num[0], range),
+                  {{{at.source, at.end, at.end}, " in " + range}});
         return fail();
     }
     p.initial = p.value = fill(value);

@@ -152,6 +152,16 @@ static bool is_whole_argument(const Interpreter &ev, Span place) {
            std::string_view("),").find(all[behind]) != std::string_view::npos;
 }
 
+// Whether a call of something behind the name's `.` follows.
+static bool calls_member(const Interpreter &ev, Span place) {
+    const std::string_view behind =
+        std::string_view(ev.sources[place.source].text).substr(place.end);
+    if (!behind.starts_with('.')) return false;
+    const std::size_t end = behind.find_first_not_of(
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_", 1);
+    return end != behind.npos && end > 1 && behind[end] == '(';
+}
+
 // Where the file binds the name at its top, further down.
 static std::optional<Span> bound_below(const Wanted &wanted, const std::string &name, Span place) {
     if (!wanted.ast) return std::nullopt;
@@ -182,7 +192,13 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string
         return;
     }
     if (ev.in_field == 0 && (name == "p" || name == "pos" || name == "uv")) {
-        d.help("the point is the argument of a function: `implicit(p => length(p) - 1)`");
+        std::string function;
+        if (const auto edit = of_user ? point_edit(ev, name, place, function) : std::nullopt)
+            d.help(fmt::format("the point is the argument of a function: `{}({} => …)`", function,
+                               name),
+                   {*edit});
+        else
+            d.help("the point is the argument of a function: `implicit(p => length(p) - 1)`");
         return;
     }
     const std::string_view way = way_from_elsewhere(name);
@@ -191,7 +207,11 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string
     if (name == "cube" || name == "square")
         d.note(fmt::format("a `{}` has its middle at the origin", near));
     if (d.fix) return;
-    if (wanted.use == Use::Called)
+    if (of_user && calls_member(ev, place)) // `arch.door(2)`
+        d.help(fmt::format("what is in another file is brought by `import \"{0}.sdf\" as {0}`; a "
+                           "value is bound by `let {0} = …`",
+                           short_name(name)));
+    else if (wanted.use == Use::Called)
         d.help(fmt::format("a function is declared before it is called: `fn {}(x) = …`",
                            short_name(name)));
     else

@@ -36,6 +36,22 @@ void help_with_shape(Diagnostic &d, std::string_view name) {
         d.help(fmt::format("the shapes stand in a block behind it: `{}(r) {{ … }}`", name));
 }
 
+void help_with_shapes(const Interpreter &ev, Diagnostic &d, const CallSite &site,
+                      std::span<const Value> args) {
+    constexpr std::pair<std::string_view, std::string_view> functions[] = {
+        {"min", "union"}, {"max", "intersection"}, {"mix", "blend"}};
+    const auto is_shape = [](const Value &v) { return v.kind == ValueKind::Shape; };
+    const auto ours = std::ranges::find(functions, site.name,
+                                        &std::pair<std::string_view, std::string_view>::first);
+    const bool shapes = args.size() > 1 && std::ranges::all_of(args.first(2), is_shape);
+    if (ours == std::end(functions) || !shapes || is_library_place(ev, site.callee))
+        return help_with_shape(d, site.name);
+    d.help(site.name == "mix"   ? "shapes are mixed by `blend(a, b, t)`"
+           : site.name == "min" ? "shapes are united by `union(a, b)`, or `a | b`"
+                                : "what shapes have in common is `intersection(a, b)`, or `a & b`",
+           {{site.callee, std::string(ours->second)}});
+}
+
 void help_with_cut(Diagnostic &d, const Value &cut) {
     if (cut.kind == ValueKind::Region)
         d.help("regions are cut by regions: `ball(3) - tube(Y, 0.1)`");
@@ -211,8 +227,12 @@ bool color_in_quotes(Interpreter &ev, std::string_view name, std::span<const For
                      std::span<const Given> given) {
     for (std::size_t i = 0; i < formals.size(); ++i) {
         const Given &g = given[i];
-        if (!g.given || g.value.kind != ValueKind::String || formals[i].name != "material")
-            continue;
+        if (!g.given || formals[i].name != "material") continue;
+        if (g.value.kind == ValueKind::Vec && g.value.ints && g.value.size == 3)
+            warn_of_bytes(ev, g.span,
+                          std::array{integer(g.value.num[0]), integer(g.value.num[1]),
+                                     integer(g.value.num[2])});
+        if (g.value.kind != ValueKind::String) continue;
         Diagnostic &d = report(ev, Code::TypeMismatch, g.span,
                                fmt::format("{} wants a color or a material, this is a string",
                                            quoted(formals[i].name, name)));
@@ -223,6 +243,46 @@ bool color_in_quotes(Interpreter &ev, std::string_view name, std::span<const For
 }
 
 // -- values --------------------------------------------------------------------------------------
+
+// What a style sheet calls a colour, `#ff8800`, `ff8800`, `rgb(255, 136, 0)`, as it is written here;
+// empty: none.
+static std::string color_in(std::string_view style) {
+    const std::string_view digits = style.starts_with('#') ? style.substr(1) : style;
+    const bool hex = digits.find_first_not_of("0123456789abcdefABCDEF") == digits.npos;
+    if (hex && (digits.size() == 3 || digits.size() == 6 || digits.size() == 8))
+        return fmt::format("#{}", digits);
+    const std::size_t open = style.find('(');
+    if (!style.starts_with("rgb") || open == style.npos) return {};
+    std::string color = "#";
+    for (std::size_t at = open; color.size() < 7;) {
+        at = style.find_first_of("0123456789", at);
+        if (at == style.npos) return {};
+        const std::size_t end = std::min(style.find_first_not_of("0123456789", at), style.size());
+        const auto part = parse_number(style.substr(at, end - at));
+        if (!part || *part > 255) return {};
+        color += fmt::format("{:02x}", static_cast<int>(*part));
+        at = end;
+    }
+    return color;
+}
+
+// `rgb(255, 128, 0)`, `[255, 128, 0]`: of the parts one is too large for any light.
+void warn_of_bytes(Interpreter &ev, Span place, std::span<const Value> parts) {
+    constexpr double brightest = 16;
+    double maximum = 0;
+    if (parts.size() != 3) return;
+    for (const Value &v : parts) {
+        if (v.kind != ValueKind::Int || v.num[0] < 0 || v.num[0] > 255) return;
+        maximum = std::max(maximum, v.num[0]);
+    }
+    if (maximum <= brightest) return;
+    const std::string hex =
+        fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(parts[0].num[0]),
+                    static_cast<int>(parts[1].num[0]), static_cast<int>(parts[2].num[0]));
+    report(ev, Code::Units, place,
+           fmt::format("the parts of a colour go from 0 to 1, and one of these is {}", maximum))
+        .help(fmt::format("write `{}` if parts of 255 are meant", hex), {{place, hex}});
+}
 
 void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeName wanted,
                      Span place) {
@@ -244,27 +304,62 @@ void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeN
     const std::string &inside = ev.strings[v.id];
     if ((wanted == TypeName::Float || wanted == TypeName::Int) && parse_number(inside))
         d.help("a number is written without quotes", {{place, inside}});
+    if (const std::string axis = axis_text(ev, v, place); wanted == TypeName::Vec3 && !axis.empty())
+        d.help("the axes are `X`, `Y` and `Z`, without quotes", {{place, axis}});
+    if (wanted != TypeName::Color && wanted != TypeName::Material) return;
     const auto named = look_up(ev, ev.prelude_frame, intern(ev, inside));
-    const bool hex = inside.size() == 7 && inside[0] == '#' &&
-                     inside.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
-    const bool known = hex || (named && !is_function(*named));
-    if (wanted == TypeName::Color || wanted == TypeName::Material)
-        d.help("colours are written without quotes: `red`, `#ff0000`",
-               known ? std::vector<Edit>{{place, inside}} : std::vector<Edit>{});
+    const std::string color = named && !is_function(*named) ? inside : color_in(inside);
+    d.help("colours are written without quotes: `red`, `#ff0000`",
+           color.empty() ? std::vector<Edit>{} : std::vector<Edit>{{place, color}});
 }
 
-void report_unknown_member(Interpreter &ev, const Value &object, const lang::Identifier &name,
-                           Span behind, Span place) {
+std::string_view way_of_part(std::string_view part) {
+    constexpr std::pair<std::string_view, std::string_view> ways[] = {
+        {"position", "a shape is moved by `.translate(…)`, which gives a new one"},
+        {"location", "a shape is moved by `.translate(…)`, which gives a new one"},
+        {"rotation", "a shape is turned by `.rotate(angle, axis: Y)`, which gives a new one"},
+        {"rotation_euler", "a shape is turned by `.rotate_euler([x, y, z])`"},
+        {"quaternion", "a shape is turned by `.rotate(angle, axis: Y)`"},
+        {"scale", "a shape is scaled by `.scale(2)`, which gives a new one"},
+        {"material", "a shape is given a colour or a material by `.paint(…)`"},
+        {"color", "a shape is given a colour or a material by `.paint(…)`"},
+        {"colour", "a shape is given a colour or a material by `.paint(…)`"}};
+    for (const auto &[theirs, way] : ways)
+        if (theirs == part) return way;
+    return {};
+}
+
+void report_unknown_member(Interpreter &ev, const Value &object, const File &ast,
+                           const lang::Member &member, Span place) {
+    const lang::Identifier &name = member.name;
+    const Span behind{place.source, ast.exprs[member.object].span.end, place.end};
+    std::vector<Edit> edits;
+    std::string made_of;
+    if (object.kind == ValueKind::Shape && ev.quiet == 0)
+        edits = part_of_shape(ev, ast, member, made_of);
+    if (!edits.empty()) { // one report for all places
+        const auto [it, fresh] =
+            ev.unknown_names.try_emplace({place.source.index, source_text(ev, place)}, place);
+        if (!fresh && it->second != place) return;
+    }
     Diagnostic &d = report(ev, Code::UnknownMember, name.span,
                            fmt::format("{} has no member `{}`", describe(ev, object), name.text));
     const bool counts = name.text == "length" || name.text == "size" || name.text == "count";
     if (object.kind == ValueKind::List && counts && place.source)
         d.help("write `len(…)`",
                {{{place.source, place.begin, place.begin}, "len("}, {behind, ")"}});
-    else if (object.kind == ValueKind::Shape)
-        d.help(fmt::format("a shape does not tell what it was made of: bind that first, as in "
-                           "`let {} = 1`, and use it in both places",
-                           short_name(name.text)));
+    else if (object.kind == ValueKind::Shape) {
+        if (const auto way = way_of_part(name.text); !way.empty())
+            d.help(std::string(way));
+        else if (const auto elsewhere = way_from_elsewhere(name.text); !elsewhere.empty())
+            d.help(std::string(elsewhere));
+        else if (!edits.empty())
+            d.help("a shape does not tell what it was made of: use " + made_of, std::move(edits));
+        else
+            d.help(fmt::format("a shape does not tell what it was made of: bind that first, as in "
+                               "`let {} = 1`, and use it in both places",
+                               short_name(name.text)));
+    }
 }
 
 // -- bodies ----------------------------------------------------------------------------------------

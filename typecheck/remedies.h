@@ -30,14 +30,33 @@ bool lacking(const Interpreter &ev, const std::string &name, const std::string &
 // Adds what does to shapes what the name makes one expect, where something does: to an error about
 // a shape that was given to what takes none.
 void help_with_shape(Diagnostic &d, std::string_view name);
+// The same of a call whose arguments are known: `min(a, b)` of shapes as a union.
+void help_with_shapes(const Interpreter &ev, Diagnostic &d, const CallSite &site,
+                      std::span<const Value> args);
 
 // What a shape's method elsewhere does that a scene has no need of, as `.save("x.stl")`: it can be
 // left away.
 bool is_needless_method(std::string_view name);
 
-// Reports a member that a value does not have: `list.length`, `shape.radius`; `behind`: from its `.`.
-void report_unknown_member(Interpreter &ev, const Value &object, const lang::Identifier &name,
-                           Span behind, Span place);
+// Reports a member that a value does not have: `list.length`, `shape.radius`.
+void report_unknown_member(Interpreter &ev, const Value &object, const File &ast,
+                           const lang::Member &member, Span place);
+// How a shape is changed of which others set a part, as `s.position`; empty: nothing is known.
+std::string_view way_of_part(std::string_view part);
+// For `s.radius`: the number that `s` was made with as a name of its own, in all places, and in
+// words. Empty where that is not plain.
+std::vector<Edit> part_of_shape(Interpreter &ev, const File &ast, const lang::Member &member,
+                                std::string &made_of);
+// True, and reported, where a method is another library's and its name a function here:
+// `s.material("gold")`, `random.uniform(0, 1)`.
+bool is_foreign_method(Interpreter &ev, const Value &object, const File &ast,
+                       const lang::Member &member, const lang::Call &call, Span place);
+// `-s` of a shape.
+void report_negated_shape(Interpreter &ev, Span place, Span operand);
+// For a function that should be of the point, and has a parameter for each of its parts; and for one
+// that gives a condition where a distance is wanted.
+void help_with_parts(const Interpreter &ev, Diagnostic &d, const Value &field, Span place);
+void help_with_condition(const Interpreter &ev, Diagnostic &d, Span place);
 
 // What other languages and libraries call what is here; empty: nothing is known.
 std::string_view name_from_elsewhere(std::string_view name);
@@ -68,6 +87,34 @@ Fix remedy_of_arguments(Interpreter &ev, std::string_view function, std::span<co
                         std::span<const Argument> args, const std::vector<std::size_t> &unknown,
                         Span callee);
 
+// Where the call ends whose last argument this is, behind its `)`; nothing where a block follows.
+std::optional<Span> behind_call(const Interpreter &ev, Span last);
+// An argument with the comma that it needs no more.
+Span with_comma(std::span<const Argument> args, std::size_t at, Span callee);
+
+// Another function in place of the one that is called: for `slab(z0: 0, z1: 1)`, for
+// `cylinder(h: 2, r1: 1, r2: 0.5)`; and of the shape with round edges, empty: none.
+bool slab_between(const Interpreter &ev, std::span<const Argument> args,
+                  std::span<const std::size_t> unknown, Fix &fix);
+bool cone_between(const Interpreter &ev, std::span<const Argument> args,
+                  std::span<const std::size_t> unknown, Span callee, Fix &fix);
+std::string_view rounded_form(std::string_view function, std::string_view argument);
+
+// Shapes that lie along Y and take no axis; the names that others have for one; an axis as it is
+// written here, also of `"z"`, empty: none.
+bool lies_along_y(std::string_view function);
+bool names_an_axis(std::string_view argument);
+std::string axis_text(const Interpreter &ev, const Value &v, Span span);
+
+// The variable of the innermost loop, or of the function without a name, around a place; empty:
+// none.
+std::string loop_variable(const Interpreter &ev, Span place);
+// What a random number there may be made of: a loop's variable, else a number that no other has.
+std::string seed_text(const Interpreter &ev, Span place);
+// For the point's name in an argument where a function is wanted: `p => ` before that.
+std::optional<Edit> point_edit(const Interpreter &ev, const std::string &name, Span place,
+                               std::string &function);
+
 // For an argument that is given by its place and by its name: the name's value, in its place.
 Fix remedy_of_duplicate(Interpreter &ev, std::string_view function, std::span<const Argument> args,
                         const Argument &named, Span call);
@@ -83,6 +130,9 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
 // True, and reported, where a material is given as a string: `s.paint("red")`.
 bool color_in_quotes(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
                      std::span<const Given> given);
+
+// Warns of a colour whose three parts are whole numbers up to 255.
+void warn_of_bytes(Interpreter &ev, Span place, std::span<const Value> parts);
 
 // For a value of another type than is wanted.
 void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeName wanted,

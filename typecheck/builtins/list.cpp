@@ -1,6 +1,7 @@
 // Lists, randomness and what helps to look into a scene: scene time only.
 #include "typecheck/conditions.h"
 #include "typecheck/interpreter.h"
+#include "typecheck/remedies.h"
 
 #include "base/text.h"
 #include "ir/view.h"
@@ -192,8 +193,14 @@ static std::optional<double> seed_of(Interpreter &ev, const CallSite &site, cons
 static Value random_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     bool no_lo = is(args[0], ValueKind::None), no_seed = is(args[2], ValueKind::None);
     if (no_lo && no_seed) {
-        report(ev, Code::MissingArgument, site.call, "`random` wants a seed")
-            .note("it is `random(seed, k = 0)` or `random(lo, hi, seed)`");
+        Diagnostic &d = report(ev, Code::MissingArgument, site.call, "`random` wants a seed")
+                            .note("it is `random(seed, k = 0)` or `random(lo, hi, seed)`");
+        if (ev.quiet > 0 || is_library_place(ev, site.call)) return poison();
+        if (const auto end = text(ev.sources, site.call).ends_with("()") ? site.call.end - 1 : 0) {
+            const std::string seed = seed_text(ev, site.call);
+            d.help(fmt::format("the same seed gives the same number: `random({})`", seed),
+                   {{{site.call.source, end, end}, seed}});
+        }
         return poison();
     }
     if (no_lo || no_seed || is(args[1], ValueKind::None)) {

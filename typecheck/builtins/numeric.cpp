@@ -32,7 +32,7 @@ static Value componentwise(Interpreter &ev, const CallSite &site, std::vector<Va
             Diagnostic &d = report(ev, Code::TypeMismatch, site.arg(i),
                                    fmt::format("`{}` wants a number or a vector, this is {}",
                                                site.name, describe(ev, args[i])));
-            if (args[i].kind == ValueKind::Shape) help_with_shape(d, site.name);
+            if (args[i].kind == ValueKind::Shape) help_with_shapes(ev, d, site, args);
             return poison();
         }
     return apply_op(ev, op, args, site.call, site.name);
@@ -261,23 +261,6 @@ static Value div_call(Interpreter &ev, const CallSite &site, std::vector<Value> 
     return apply_op(ev, Op::Div, args, site.call, site.name);
 }
 
-// `rgb(255, 128, 0)`: whole numbers up to 255, of which one is too large for any light.
-static void warn_of_bytes(Interpreter &ev, const CallSite &site, const std::vector<Value> &args) {
-    constexpr double brightest = 16;
-    double maximum = 0;
-    for (const Value &v : args) {
-        if (v.kind != ValueKind::Int || v.num[0] < 0 || v.num[0] > 255) return;
-        maximum = std::max(maximum, v.num[0]);
-    }
-    if (maximum <= brightest) return;
-    const std::string hex =
-        fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(args[0].num[0]),
-                    static_cast<int>(args[1].num[0]), static_cast<int>(args[2].num[0]));
-    report(ev, Code::Units, site.call,
-           fmt::format("the parts of a colour go from 0 to 1, and one of these is {}", maximum))
-        .help(fmt::format("write `{}` if parts of 255 are meant", hex), {{site.call, hex}});
-}
-
 static Value rgb_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     // sRGB in the text, linear inside (docs/language.md)
     auto linear = [&](const Value &v) {
@@ -293,7 +276,7 @@ static Value rgb_call(Interpreter &ev, const CallSite &site, std::vector<Value> 
         return from_node(
             ev, g.make(Op::Select, {g.make(Op::LessEqual, {c, g.number(0.04045)}), low, high}));
     };
-    warn_of_bytes(ev, site, args);
+    warn_of_bytes(ev, site.call, args);
     std::vector<Value> parts;
     for (std::size_t i = 0; i < 3; ++i) {
         if (!is_scalar(ev, args[i])) {
