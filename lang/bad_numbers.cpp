@@ -75,6 +75,11 @@ BadNumber explain_bad_number(std::string_view word, bool named) {
         std::all_of(rest.begin() + 1, rest.end(), is_hex) && rest.size() < 9) {
         std::uint64_t value = 0;
         for (const char c : rest.substr(1)) value = value << 4 | hex_value(c);
+        if (rest.size() == 7) { // as a colour has
+            const std::string color = "#" + std::string(rest.substr(1));
+            return {"numbers are written in decimal, and colours with a `#`",
+                    "write `" + color + "`", color};
+        }
         return {"numbers are written in decimal", "write the value", fmt::to_string(value)};
     }
     if (rest[0] == '_' &&

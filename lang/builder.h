@@ -258,6 +258,7 @@ class Builder {
     bool foreign_operand(Wanted wanted, Index at);
     bool foreign_list(Index at);
     bool foreign_group(Index at, bool list);
+    bool is_body_of_lambda(Index open, Index at) const;
     bool foreign_binding(Index at);
     bool foreign_name(Index at);
     std::vector<Edit> names_of_let(Index let);
@@ -320,6 +321,14 @@ class Builder {
     bool wanted_at_start(Index at) const;
     bool foreign_product(Index at);
     bool juxtaposed_arguments(Index at);
+
+    // Statements of theirs, each of its own kind (foreign_statements.cpp).
+    bool setting_assigned(std::string_view name, Span target, Span value);
+    bool print_stream(Index first);
+    bool block_until_end(Index at);
+    void loop_over_pairs(Index at);
+    bool label_of_param(Index at);
+    bool words_of_range(Index first, Index at);
 
     // Words and blocks of theirs (foreign_words.cpp).
     void declare_poison(Index name);

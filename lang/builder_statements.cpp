@@ -238,6 +238,10 @@ void Builder::assignment() {
     const std::uint32_t tall = std::max(height(target.id), height(value.id));
     const Name *name = std::get_if<Name>(&ast_.exprs[target.id].kind);
     if (!in_function_ && name && kind(at) == Tok::Assign && !is_declared(name->text)) {
+        if (setting_assigned(name->text, span(target), span(value))) {
+            add_stmt(Bad{}, whole, 1);
+            return;
+        }
         if (at >= let_until_) // else told at the `let` that is for all of them
             foreign(span(target), "a new name is bound with `let`")
                 .help("write `let " + name->text + " = …`",

@@ -331,7 +331,7 @@ bool Builder::foreign_junk(Index first, Index at) {
                     {{id_, token(at - 1).end, token(at - 1).end}, " }"}});
         return true;
     }
-    if (foreign_lambda(at) || separated_unit(at)) return true;
+    if (foreign_lambda(at) || separated_unit(at) || words_of_range(first, at)) return true;
     if (text(first + 1) != text(at) && foreign_product(at)) return true; // else its own name
     if (found == Tok::Name && kind(at - 1) == Tok::Name && text(at - 1) == "new") {
         foreign(span(at - 1), "nothing is made with `new`")

@@ -60,6 +60,11 @@ std::string Builder::transform_text(Index name) const {
         if (match(i) > i) ++depth;
         if (match(i) < i) --depth;
         if (kind(i) == Tok::Comma && depth == 1) angle = false;
+        if (color && kind(i) == Tok::Comma && depth == 1) { // an alpha, which nothing draws
+            i = close - 1;
+            end = token(close).begin;
+            continue;
+        }
         const bool assign = kind(i) == Tok::Assign;
         if (!assign) out += text(end, token(i).begin);
         const std::string_view word = text(i);
@@ -105,10 +110,13 @@ bool Builder::juxtaposed_calls(Index first, Index at) {
     std::string moved(text(shape));
     for (const auto &[theirs, ours] : scad_names)
         if (moved == theirs) moved = ours;
-    foreign(span(first, match(first + 1)), "a transform stands behind the shape that it moves")
-        .help("write " + in_code(moved + "(…)" + chain),
-              {{{id_, token(first).begin, token(shape).end}, moved},
-               {{id_, token(end - 1).end, token(end - 1).end}, chain}});
+    Diagnostic &d =
+        foreign(span(first, match(first + 1)), "a transform stands behind the shape that it moves");
+    if (text(first) == "color" && kind(match(first + 1) - 2) == Tok::Comma)
+        d.note("what light passes through is not drawn: the alpha is left away");
+    d.help("write " + in_code(moved + "(…)" + chain),
+           {{{id_, token(first).begin, token(shape).end}, moved},
+            {{id_, token(end - 1).end, token(end - 1).end}, chain}});
     return true;
 }
 

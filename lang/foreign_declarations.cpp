@@ -214,6 +214,7 @@ void Builder::destructuring(Index first, Index from, Index past, Index assign) {
     for (Index i = list ? value + 1 : value, begin = i; i <= to;
          i = match(i) > i ? match(i) + 1 : i + 1) {
         if (i < to && kind(i) != Tok::Comma) continue;
+        if (kind(begin) == Tok::Name && kind(begin + 1) == Tok::Colon) begin += 2; // `{x: 1}`
         if (i > begin) values.emplace_back(text(token(begin).begin, token(i - 1).end));
         begin = i + 1;
     }
@@ -352,8 +353,9 @@ bool Builder::foreign_head(Index first) {
         return true;
     }
     const bool typed = name == first + 1 && is_their_own(word);
-    const bool curried = !typed && !is_one_of(word, qualifiers) && !is_type_word(word) &&
-                         !is_one_of(word, function_words);
+    const bool of_type = name == first + 1 && word[0] >= 'A' && word[0] <= 'Z'; // `Shape s = …`
+    const bool curried = !typed && !of_type && !is_one_of(word, qualifiers) &&
+                         !is_type_word(word) && !is_one_of(word, function_words);
     if (value && curried) {
         foreign_curried(first, first, name + 1);
         return true;

@@ -113,6 +113,16 @@ bool Builder::foreign_list(Index at) {
     return foreign_group(at, true);
 }
 
+// Whether the argument that stands at `at`, between its comma and that, is a function without a name.
+bool Builder::is_body_of_lambda(Index open, Index at) const {
+    for (Index i = at; i-- > open + 1;) {
+        if (match(i) < i) i = match(i);
+        if (kind(i) == Tok::Comma) return false;
+        if (kind(i) == Tok::FatArrow) return true;
+    }
+    return false;
+}
+
 // The same in parentheses; `list` in brackets.
 bool Builder::foreign_group(Index at, bool list) {
     const Tok found = kind(at);
@@ -165,6 +175,21 @@ bool Builder::foreign_group(Index at, bool list) {
             .help("write `[ … ]`", {{span(open), "["}, {span(close), "]"}});
         return true;
     }
+    if (!list && found == Tok::Assign && is_body_of_lambda(open, at)) { // `p => p.x ^ 2 = 1`
+        const Index right = at + 1;
+        Index end = right;
+        bool sum = false;
+        while (end < match(open) && kind(end) != Tok::Comma) {
+            sum = sum || is_one_of(kind(end), {Tok::Plus, Tok::Minus});
+            end = match(end) > end ? match(end) + 1 : end + 1;
+        }
+        std::vector<Edit> edits{{span(at), sum ? "- (" : "-"}};
+        if (sum && end > right)
+            edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, ")"});
+        diagnostics_.add(Code::SyntaxError, span(at), "a surface is where its function is 0")
+            .help("write `-`: `a - b` is 0 where a equals b", std::move(edits));
+        return true;
+    }
     if (found == Tok::Arrow && kind(before) == Tok::Name && is_declared(std::string(text(before))))
         return foreign_instead(at, "a part of a value stands behind a `.`", ".");
     if (found == Tok::Arrow)
@@ -197,6 +222,7 @@ std::vector<Edit> Builder::names_of_let(Index let) {
 bool Builder::foreign_name(Index at) {
     const Tok found = kind(at);
     const Index before = at > 0 ? at - 1 : 0;
+    if (label_of_param(at)) return true;
     if (kind(before) == Tok::Fn && (found == Tok::Open || found == Tok::LambdaOpen)) {
         foreign(span(before), "a function without a name is written `x => …`")
             .help("name it, as in `fn f(x) = 2 * x`, or write `x => 2 * x`");
@@ -281,8 +307,7 @@ bool Builder::foreign_in(Index at) {
         return true;
     }
     if (found == Tok::Comma) {
-        foreign(span(at), "a loop has one variable")
-            .help("loop over the places: `for i in 0..len(list) { let x = list[i] … }`");
+        loop_over_pairs(at);
         return true;
     }
     return false;
@@ -317,6 +342,14 @@ bool Builder::foreign_function_body(Index at) {
     }
     if (found == Tok::FatArrow)
         return foreign_instead(at, "the body of a `fn` stands behind `=`", "=");
+    const bool value = is_one_of(found, {Tok::Name, Tok::Number, Tok::Open, Tok::ListOpen, Tok::If,
+                                         Tok::Minus, Tok::LambdaName});
+    if (value && !token(at).first_on_line) { // `fn ball(r) sphere(r)`
+        const std::uint32_t end = token(at - 1).end;
+        diagnostics_.add(Code::SyntaxError, span(at), "a function's short body stands behind `=`")
+            .help("write `=`", {{{id_, end, end}, " ="}});
+        return true;
+    }
     return false;
 }
 

@@ -419,7 +419,7 @@ class Forms : WordChanges {
     bool by_spread(std::size_t &i) {
         const bool sign = kind(i) == Tok::Star || (kind(i) == Tok::DotDot && text(i) == "...");
         if (!sign || before(i) != Tok::Open || i < 2 || kind(i - 2) != Tok::Name ||
-            kind(i + 1) != Tok::Name || words_[i].first_on_line)
+            !is_one_of(kind(i + 1), {Tok::Name, Tok::ListOpen}) || words_[i].first_on_line)
             return false;
         const std::size_t close = close_of(i - 1, longest_list);
         int depth = 0;

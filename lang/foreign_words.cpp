@@ -136,7 +136,7 @@ bool Builder::foreign_statement(Index first) {
                   {{{id_, token(first).begin, token(first + 2).begin}, ""}});
         return true;
     }
-    if (curv_block(first)) return true;
+    if (curv_block(first) || print_stream(first)) return true;
     const auto *row = std::ranges::find(statement_words, text(first), &ForeignWord::word);
     if (row == std::end(statement_words) || is_declared(std::string(text(first)))) return false;
     const Tok next = kind(first + 1);
@@ -260,6 +260,7 @@ void Builder::foreign_colon(Index at) {
 
 // `if a then b else c`, `for i in 0..3 do b`.
 void Builder::foreign_then(Index at) {
+    if (kind(at + 1) == Tok::End && block_until_end(at)) return;
     Diagnostic &d = foreign(span(at), "a body stands in braces");
     const auto is_end = [&](Index i) { return kind(i) == Tok::Name && text(i) == "end"; };
     const auto end_of = [&](Index i) { // of the branch that begins there

@@ -1,0 +1,179 @@
+// Answers to statements that other languages have and this one writes as calls, or with braces:
+// streams of output, settings that are assigned to, loops over pairs, bodies up to `end`, and what
+// stands around the value of a `param`.
+#include "lang/builder.h"
+
+#include <algorithm>
+#include <array>
+
+namespace fathom::lang {
+
+namespace {
+
+constexpr std::array<std::string_view, 6> settings = {"background", "camera",   "light",
+                                                      "sun",        "lighting", "render"};
+constexpr std::array<std::string_view, 6> range_words = {"min",     "from", "range",
+                                                         "between", "low",  "limits"};
+
+} // namespace
+
+// `background = black`: the call that it is here.
+bool Builder::setting_assigned(std::string_view name, Span target, Span value) {
+    if (!is_one_of(name, settings)) return false;
+    const std::string call =
+        std::string(name) + "(" + std::string(text(value.begin, value.end)) + ")";
+    foreign(target, "the scene's settings are calls")
+        .help("write " + in_code(call),
+              {{{id_, target.end, value.begin}, "("}, {{id_, value.end, value.end}, ")"}});
+    return true;
+}
+
+// `std::cout << "r is " << r << std::endl`.
+bool Builder::print_stream(Index first) {
+    const bool qualified =
+        text(first) == "std" && kind(first + 1) == Tok::Colon && kind(first + 2) == Tok::Colon;
+    const Index out = qualified ? first + 3 : first;
+    const auto is_sign = [&](Index i) {
+        return kind(i) == Tok::Less && kind(i + 1) == Tok::Less && touch(i, i + 1);
+    };
+    if (kind(out) != Tok::Name || (text(out) != "cout" && text(out) != "cerr") || !is_sign(out + 1))
+        return false;
+    failed_ = first + 1;
+    // `std::` was told, and left away, where the words were read
+    constexpr std::string_view space = "std::";
+    const std::string_view before = text(0, token(first).begin);
+    const bool told = before.ends_with(space);
+    const auto begin = static_cast<std::uint32_t>(token(first).begin - (told ? space.size() : 0));
+    const std::uint32_t last = token(statement_end(first) - 1).end;
+    const std::string_view all = text(0, last);
+    for (std::size_t at = all.find(space, begin); at < all.size(); at = all.find(space, at + 1)) {
+        const auto i = static_cast<std::uint32_t>(at);
+        diagnostics_.withdraw(Code::ForeignSyntax,
+                              {id_, i, i + static_cast<std::uint32_t>(space.size())});
+    }
+    std::string shown;
+    Index end = out + 1;
+    while (is_sign(end)) {
+        const Index part = end + 2;
+        Index past = part;
+        while (!ends_statement(past) && !is_sign(past))
+            past = match(past) > past ? match(past) + 1 : past + 1;
+        if (past == part) break;
+        const std::string value(text(token(part).begin, token(past - 1).end));
+        if (!value.ends_with("endl") && value != "\"\\n\"")
+            shown += (shown.empty() ? "" : " + ") + value;
+        end = past;
+    }
+    const std::string call = "print(" + shown + ")";
+    foreign({id_, begin, token(out).end}, "a value is shown by `print`")
+        .help("write " + in_code(call), {{{id_, begin, last}, call}});
+    return true;
+}
+
+// `for i in 0..3 do`, `if a then`, with the body on the lines below, up to `end`; at the word.
+bool Builder::block_until_end(Index at) {
+    constexpr Index farthest = 5000; // words
+    const auto is = [&](Index i, const char *word) {
+        return kind(i) == Tok::Name && text(i) == word;
+    };
+    std::vector<Edit> edits{{span(at), "{"}};
+    int open = 1;
+    Index i = at + 1;
+    for (; i < tokens_.tokens.size() && i < at + farthest; ++i) {
+        if (is(i, "do") || is(i, "then")) {
+            Index header = i;
+            while (header > at && kind(header) != Tok::If && kind(header) != Tok::End) --header;
+            if (kind(header) != Tok::If || kind(header - 1) != Tok::Else) ++open;
+            edits.push_back({span(i), "{"});
+        }
+        if (is(i, "end") && token(i).first_on_line) {
+            edits.push_back({span(i), "}"});
+            if (--open == 0) break;
+        }
+        if (kind(i) == Tok::Else && token(i).first_on_line)
+            edits.push_back({span(i), kind(i + 1) == Tok::If ? "} else" : "} else {"});
+    }
+    if (open > 0) return false;
+    failed_ = i;
+    foreign(span(at), "a body stands in braces").help("write `{ … }`", std::move(edits));
+    return true;
+}
+
+// `for i, r in enumerate(list)`, `for a, b in zip(l, m)`, at the comma: the loop over the places.
+void Builder::loop_over_pairs(Index at) {
+    Diagnostic &d = foreign(span(at), "a loop has one variable");
+    const std::string help = "loop over the places: `for i in 0..len(list) { let x = list[i] … }`";
+    const Index one = at - 1, two = at + 1, function = at + 3, open = function + 1,
+                close = match(open), past = close + 1;
+    const bool counted = text(function) == "enumerate", zipped = text(function) == "zip";
+    if (kind(two) != Tok::Name || kind(at + 2) != Tok::In || (!counted && !zipped) ||
+        kind(open) != Tok::Open || !is_one_of(kind(past), {Tok::Colon, Tok::Body})) {
+        d.help(help);
+        return;
+    }
+    std::vector<std::string> lists;
+    for (Index begin = open + 1, i = begin; i <= close; i = match(i) > i ? match(i) + 1 : i + 1) {
+        if (i < close && kind(i) != Tok::Comma) continue;
+        if (i > begin) lists.emplace_back(text(token(begin).begin, token(i - 1).end));
+        begin = i + 1;
+    }
+    Index first = past + 1;
+    while (kind(first) == Tok::End && first < tokens_.tokens.size()) ++first;
+    if (lists.size() != (counted ? 1u : 2u) || first >= tokens_.tokens.size()) {
+        d.help(help);
+        return;
+    }
+    const auto is_i = [&](Index name) { return text(name) == "i"; };
+    const std::string place = counted                  ? std::string(text(one))
+                              : is_i(one) || is_i(two) ? "place"
+                                                       : "i";
+    const auto let = [&](Index name, const std::string &list) {
+        return "let " + std::string(text(name)) + " = " + list + "[" + place + "]; ";
+    };
+    const std::string lets = counted ? let(two, lists[0]) : let(one, lists[0]) + let(two, lists[1]);
+    std::vector<Edit> edits{{span(one, past - 1), place + " in 0..len(" + lists[0] + ")"},
+                            {{id_, token(first).begin, token(first).begin}, lets}};
+    if (kind(past) == Tok::Colon)
+        indented_body(past, edits);
+    else
+        failed_ = match(past);
+    d.help(help, std::move(edits));
+}
+
+// `param "Radius" r = 1 in 0..2`, at the string: it stands last.
+bool Builder::label_of_param(Index at) {
+    if (at == 0 || kind(at - 1) != Tok::Param || kind(at) != Tok::String ||
+        kind(at + 1) != Tok::Name)
+        return false;
+    lost_.push_back(at + 1);
+    failed_ = at + 1;
+    const std::uint32_t end = token(statement_end(at - 1) - 1).end;
+    foreign(span(at), "a param's words stand behind its range")
+        .help("write them last", {{{id_, token(at).begin, token(at + 1).begin}, ""},
+                                  {{id_, end, end}, " " + std::string(text(at))}});
+    return true;
+}
+
+// `param r = 1 min 0.5 max 2`, `param r = 1 range(0, 2)`, at the word: two numbers as a range.
+bool Builder::words_of_range(Index first, Index at) {
+    if (kind(first) != Tok::Param || kind(at) != Tok::Name || !is_one_of(text(at), range_words) ||
+        at < first + 4)
+        return false;
+    std::vector<std::string> ends;
+    const Index past = statement_end(first);
+    Index label = past;
+    for (Index i = at; i < past; ++i) {
+        if (kind(i) == Tok::String) label = std::min(label, i);
+        if (kind(i) == Tok::Number)
+            ends.push_back((kind(i - 1) == Tok::Minus ? "-" : "") + std::string(text(i)));
+    }
+    if (ends.size() != 2) return false;
+    const std::string range = " in " + ends[0] + ".." + ends[1];
+    foreign(span(at), "a param's range stands behind `in`")
+        .help("write " + in_code(range.substr(1)),
+              {{{id_, token(at - 1).end, token(label - 1).end}, range}});
+    lost_.push_back(first + 1);
+    return true;
+}
+
+} // namespace fathom::lang
