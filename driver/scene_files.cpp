@@ -41,6 +41,7 @@ bool SceneFiles::allowed(const fs::path &canonical) const {
 std::variant<SceneFiles::Found, LoadError> SceneFiles::find(const std::string &path,
                                                             const std::string &from) {
     if (auto error = typecheck::too_long(path)) return *error;
+    if (path.empty()) return LoadError{LoadError::Reason::NotFound, "a file has a name"};
     auto importer = printed_.find(from);
     fs::path beside = importer == printed_.end() ? scene_folder_ : importer->second.parent_path();
     const auto [answer, is_new] = answers_.try_emplace({beside.string(), path});

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 #include <span>
 
 namespace fathom::lang {
@@ -146,6 +147,50 @@ static std::string plain_spelling(std::string_view name) {
         out += ours;
     }
     return out.empty() || is_digit(out[0]) ? std::string() : out;
+}
+
+// Signs that turn the direction in which a text is shown.
+static bool turns_text(std::uint32_t c) {
+    return (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
+}
+
+// Nothing is shown of them: spaces of no width, joiners, marks of direction and of byte order.
+static bool is_invisible(std::uint32_t c) {
+    return turns_text(c) || c == 0xAD || (c >= 0x200B && c <= 0x200F) ||
+           (c >= 0x2060 && c <= 0x2064) || c == 0xFEFF || (c >= 0xE0000 && c <= 0xE007F);
+}
+
+// In comments and strings: what is read there should be what is shown.
+void Lexer::turned_text(std::uint32_t begin, std::uint32_t end) {
+    constexpr std::size_t most_edits = 40;
+    if (!beyond_ascii_) return;
+    std::vector<Edit> edits;
+    for (std::uint32_t at = begin; at < end && edits.size() < most_edits;) {
+        const CodePoint c = decode_utf8(source_.text, at);
+        if (c.valid && turns_text(c.value)) edits.push_back({span(at, at + c.length), ""});
+        at += std::max<std::uint32_t>(c.length, 1);
+    }
+    if (edits.empty()) return;
+    const Span first = edits[0].span;
+    report(Code::BadCharacter, first.begin, first.end,
+           "a sign that turns the direction of the text stands here")
+        .help("leave it away: the text is shown otherwise than it is read", std::move(edits));
+}
+
+// Whether that is such a sign between words, which is then told.
+bool Lexer::invisible_sign(std::uint32_t begin, std::uint32_t end, std::uint32_t sign) {
+    const bool line = sign == 0x2028 || sign == 0x2029;
+    if (!line && !is_invisible(sign)) return false;
+    add(Tok::Bad, begin, end);
+    Diagnostic &d =
+        report(Code::BadCharacter, begin, end,
+               line ? "this end of a line is none of the language's"
+                    : fmt::format("a sign that is not seen stands here, U+{:04X}", sign));
+    if (line)
+        d.help("write an ordinary one", {{span(begin, end), "\n"}});
+    else
+        d.help("leave it away", {{span(begin, end), ""}});
+    return true;
 }
 
 } // namespace fathom::lang

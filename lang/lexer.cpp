@@ -111,6 +111,7 @@ Diagnostic &Lexer::foreign(std::uint32_t begin, std::uint32_t end, std::string m
 void Lexer::line_comment(std::uint32_t begin, std::uint32_t end) {
     if (end > begin && source_.text[end - 1] == '\r') --end;
     words_.comments.push_back({begin, end, true});
+    turned_text(begin, end);
     // Python's `a //= 2`: a comment would swallow it in silence.
     const std::string_view text = slice(begin, end);
     const bool after_name = !fresh_line_ && words_.tokens.back().kind == Tok::Name;
@@ -121,6 +122,7 @@ void Lexer::line_comment(std::uint32_t begin, std::uint32_t end) {
 
 void Lexer::block_comment(std::uint32_t begin, std::uint32_t end) {
     words_.comments.push_back({begin, end, false});
+    turned_text(begin, end);
     if (slice(begin, end).find('\n') != std::string_view::npos) fresh_line_ = true;
 }
 
@@ -186,6 +188,7 @@ void Lexer::number(std::uint32_t begin, std::uint32_t end) {
 
 void Lexer::string(std::uint32_t begin, std::uint32_t end) {
     add(Tok::String, begin, end);
+    turned_text(begin, end);
     const std::string_view text = slice(begin, end);
     for (std::uint32_t i = 0; i < text.size();) {
         const CodePoint c = decode_utf8(text, i);
@@ -400,6 +403,7 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
     const CodePoint first = decode_utf8(source_.text, begin);
     if (first.valid && begin + first.length == end && strange_sign(begin, end, first.value)) return;
     const std::string_view text = slice(begin, end);
+    if (first.valid && invisible_sign(begin, end, first.value)) return;
     if (text == "\xCF\x80") { // π
         add(Tok::Bad, begin, end);
         report(Code::BadCharacter, begin, end, "names use the letters a to z")

@@ -32,6 +32,8 @@ class Lexer {
     std::uint32_t define(std::uint32_t begin, std::uint32_t end);
     void directive(std::uint32_t begin, std::uint32_t end, std::uint32_t line_end);
     void sign(std::uint32_t begin, std::uint32_t end);
+    void turned_text(std::uint32_t begin, std::uint32_t end);
+    bool invisible_sign(std::uint32_t begin, std::uint32_t end, std::uint32_t sign);
     void strange(std::uint32_t begin, std::uint32_t end); // bytes that begin no word
 
     std::size_t count() const { return words_.tokens.size(); }
