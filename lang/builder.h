@@ -251,6 +251,7 @@ class Builder {
     bool names_function(ExprId id);
     Index statement_end(Index first) const;
     void drop(const Mark &mark);
+    bool has_body(Index name) const;
     void replace_bad_statement(Index first);
 
     // Answers made for the forms of other languages (foreign.cpp); true where they reported.
@@ -323,6 +324,7 @@ class Builder {
     bool juxtaposed_arguments(Index at);
 
     // Statements of theirs, each of its own kind (foreign_statements.cpp).
+    bool mistyped_keyword(Index first);
     bool setting_assigned(std::string_view name, Span target, Span value);
     bool print_stream(Index first);
     bool block_until_end(Index at);

@@ -355,6 +355,15 @@ Builder::Index Builder::statement_end(Index first) const {
 
 // What stands for the statement in the tree. Its name stays declared, so that its uses are no new
 // errors.
+// Whether what stands behind the parentheses after a name makes it a declaration.
+bool Builder::has_body(Index name) const {
+    Index body = match(name + 1) + 1;
+    if (kind(body) == Tok::End && text(body) != ";") ++body; // perhaps on the line below
+    return text(name - 1) != "with" &&
+           is_one_of(kind(body), {Tok::Body, Tok::Trailing, Tok::StrayBrace, Tok::Colon,
+                                  Tok::Assign, Tok::Arrow});
+}
+
 void Builder::replace_bad_statement(Index first) {
     const std::vector<Index> lost = std::exchange(lost_, {});
     for (const Index name : lost) declare_poison(name);
@@ -365,9 +374,9 @@ void Builder::replace_bad_statement(Index first) {
     if (kind(first) == Tok::Name) // `x = …`, `const float x = …`, `def f(…)`
         while (kind(name + 1) == Tok::Name) ++name;
     const Tok behind = kind(name + 1);
-    const bool declares =
-        kind(first) != Tok::Name || behind == Tok::Assign ||
-        (name > first && behind == Tok::Open && text(name - 1) != "default"); // JavaScript's export
+    const bool declares = kind(first) != Tok::Name || behind == Tok::Assign ||
+                          (name > first && behind == Tok::Open && has_body(name) &&
+                           text(name - 1) != "default"); // JavaScript's export
     const auto is_lost = [&](Index i) { return text(i) == text(name); };
     if (std::ranges::any_of(lost, is_lost)) {
         add_stmt(Bad{}, whole, 1);

@@ -161,12 +161,26 @@ void Builder::generic_failure(Wanted wanted, Index at) {
     case Wanted::StatementEnd:
         if (found == Tok::Comma) {
             const bool last = at + 1 >= tokens_.tokens.size() || kind(at + 1) == Tok::End;
+            Index first = at; // of the statement
+            while (first > 0 && kind(first - 1) != Tok::End && match(first - 1) <= first - 1)
+                first = match(first - 1);
+            if (kind(first) == Tok::Return && !last) { // `return 1, 2`
+                const std::uint32_t end = token(statement_end(first) - 1).end;
+                d.help("several values are one as a list",
+                       {{{id_, token(first + 1).begin, token(first + 1).begin}, "["},
+                        {{id_, end, end}, "]"}});
+                break;
+            }
             d.help("statements stand on lines of their own, without commas",
                    {{span(at), last ? "" : ";"}});
         }
         if (is_one_of(found, {Tok::Let, Tok::Var, Tok::Fn, Tok::Param}) &&
             kind(at + 1) == Tok::Name)
             lost_.push_back(at + 1);
+        if (begins_operand(found) && kind(at - 1) == Tok::Name && !token(at).first_on_line)
+            d.help("a call's arguments stand in parentheses, " +
+                   in_code(std::string(text(at - 1)) + "(…)") +
+                   ", and what is done to a shape behind a `.`");
         if ((begins_operand(found) || begins_statement(found)) && kind(at - 1) != Tok::Name) {
             const std::uint32_t end = token(at - 1).end;
             d.help("begin a new line, or part statements by `;`", {{{id_, end, end}, ";"}});

@@ -59,6 +59,12 @@ void Builder::settle_foreign_names() {
                 expr.kind = Name{ours, word(ours == "pi" ? "pi" : "tau")};
                 continue;
             }
+            if (member->name.text == "array" || member->name.text == "asarray") {
+                foreign(all, "a vector or a list stands in brackets")
+                    .help("leave " + in_code(text(all.begin, all.end)) + " away", {{all, ""}});
+                expr.kind = Poison{};
+                continue;
+            }
             foreign(foreign_name.span, "the mathematical functions need no module")
                 .help("write " + in_code(member->name.text), {{qualifier, ""}});
             expr.kind = Name{member->name.text, member->name.word};
@@ -310,6 +316,7 @@ bool Builder::shape_behind_call(Index first, Index at) {
 
 bool Builder::foreign_junk(Index first, Index at) {
     const Tok found = kind(at);
+    if (kind(first) == Tok::Name && at == first + 1 && mistyped_keyword(first)) return true;
     if (kind(first) == Tok::Name && kind(first + 1) == Tok::Name && foreign_head(first))
         return true;
     if (found == Tok::Name && juxtaposed_calls(first, at)) return true;

@@ -345,16 +345,29 @@ class Forms : WordChanges {
             past = kind(k + 3) == Tok::ListClose ? k + 4 : k + 5;
             if (kind(past - 1) != Tok::ListClose) return false;
         }
-        if (name == 0 || kind(name) != Tok::Name || kind(past) != Tok::Assign ||
-            words_[past].first_on_line)
+        const bool braces =
+            item > 0 && name > 0 && is_one_of(kind(past), {Tok::Body, Tok::Trailing});
+        if (name == 0 || kind(name) != Tok::Name || words_[past].first_on_line ||
+            (kind(past) != Tok::Assign && !braces))
             return false;
         const std::string let = "let " + std::string(text(name));
-        const Span head = words(i, past - 1);
+        const std::size_t close = braces ? close_of(past, longest_list) : 0;
+        if (braces && close == 0) return false;
+        const Span head = words(i, braces ? past : past - 1);
+        std::vector<Edit> edits{{head, braces ? let + " = [" : let}};
+        if (braces) edits.push_back({words(close, close), "]"}); // `rs{0.2, 0.3}`
         say(head, "a name is bound with `let`")
-            .help("write " + in_code(let + " = …"), {{head, let}});
+            .help("write " + in_code(let + (braces ? " = [ … ]" : " = …")), std::move(edits));
         begin_change(i);
         put(Tok::Let, words_[i].begin, words_[i].begin, words_[i].first_on_line);
         put(Tok::Name, words_[name].begin, words_[name].end);
+        if (braces) {
+            put(Tok::Assign, words_[past].begin, words_[past].begin);
+            put(Tok::ListOpen, words_[past].begin, words_[past].end);
+            braces_.push_back(close);
+            i = past;
+            return true;
+        }
         i = past - 1;
         array_ = kind(past + 1) == Tok::Body;
         return true;

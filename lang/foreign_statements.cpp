@@ -1,6 +1,7 @@
 // Answers to statements that other languages have and this one writes as calls, or with braces:
 // streams of output, settings that are assigned to, loops over pairs, bodies up to `end`, and what
 // stands around the value of a `param`.
+#include "base/suggest.h"
 #include "lang/builder.h"
 
 #include <algorithm>
@@ -16,6 +17,25 @@ constexpr std::array<std::string_view, 6> range_words = {"min",     "from", "ran
                                                          "between", "low",  "limits"};
 
 } // namespace
+
+// `lte r = 2`, `improt "a.sdf"`: a keyword, mistyped.
+bool Builder::mistyped_keyword(Index first) {
+    constexpr std::array<std::string_view, 7> keywords = {"let",    "var", "param", "import",
+                                                          "return", "for", "while"};
+    const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
+    const std::string_view word = text(first);
+    const auto near = std::ranges::find_if(keywords, [&](std::string_view keyword) {
+        return small(word[0]) == keyword[0] && edit_distance(word, keyword) <= 1;
+    });
+    const bool follows = kind(first + 1) == Tok::Name || kind(first + 1) == Tok::String;
+    if (near == keywords.end() || !follows || token(first + 1).first_on_line ||
+        is_declared(std::string(word)))
+        return false;
+    if (kind(first + 1) == Tok::Name) lost_.push_back(first + 1);
+    diagnostics_.add(Code::SyntaxError, span(first), "no statement begins with " + in_code(word))
+        .help("did you mean " + in_code(*near) + "?", {{span(first), std::string(*near)}});
+    return true;
+}
 
 // `background = black`: the call that it is here.
 bool Builder::setting_assigned(std::string_view name, Span target, Span value) {

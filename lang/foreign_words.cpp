@@ -170,7 +170,9 @@ bool Builder::foreign_statement(Index first) {
     if (next == Tok::Name && row->declares) lost_.push_back(first + 1);
     Diagnostic &d = foreign(span(first), std::string(row->message));
     const Index end = statement_end(first);
-    if (row->drop)
+    if (text(first) == "async" || text(first) == "await")
+        d.help("leave the word away", {{{id_, token(first).begin, token(first + 1).begin}, ""}});
+    else if (row->drop)
         d.help(std::string(row->help), {{{id_, token(first).begin, token(end - 1).end}, ""}});
     else
         d.help(std::string(row->help));

@@ -94,6 +94,18 @@ static bool is_point(const Interpreter &ev, const Value &v) {
            is_scalar(ev, ev.lists[v.id][0]);
 }
 
+// Where a call ends whose one argument too many, the last, is a colour or a material.
+static std::optional<Span> looks_like_paint(const Interpreter &ev, std::span<const Formal> formals,
+                                            std::span<const Argument> args) {
+    const Argument &last = args.back();
+    const bool paints = last.value.kind == ValueKind::Material || last.value.color;
+    const bool of_library = !formals.empty() && formals[0].declared.source;
+    if (args.size() != formals.size() + 1 || args.size() < 2 || !of_library || last.name ||
+        last.trailing || !paints)
+        return std::nullopt;
+    return behind_call(ev, last.span);
+}
+
 static void report_too_many(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
                             std::span<const Argument> args, const Argument &first) {
     std::size_t given = 0;
@@ -111,6 +123,11 @@ static void report_too_many(Interpreter &ev, std::string_view name, std::span<co
         const Span row = join(args[1].span, args[3].span);
         const std::string written = fmt::format("rgb({})", text(ev.sources, row));
         d.help(fmt::format("write `{}`", written), {{row, written}});
+    } else if (const auto end = looks_like_paint(ev, formals, args)) { // `sphere(1, red)`
+        const std::string paint = fmt::format(".paint({})", text(ev.sources, first.span));
+        d.help(fmt::format("write `{}` behind it", paint),
+               {{{first.span.source, args[args.size() - 2].span.end, first.span.end}, ""},
+                {*end, paint}});
     } else if (args[0].value.kind == ValueKind::Shape) {
         help_with_shape(d, name);
         help_with_row(ev, d, name, formals, args);
@@ -324,7 +341,8 @@ std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_vi
                is_scalar(ev, args[end].value))
             ++end;
         if (!formals[i].is_place || end - first < 2) continue;
-        const Fix fix = remedy_of_row(args.subspan(first, end - first), formals[i].vector_size);
+        const Fix fix =
+            remedy_of_row(args.subspan(first, end - first), formals[i].vector_size, true);
         report(ev, Code::TypeMismatch, join(args[first].span, args[end - 1].span),
                fmt::format("`{}` of `{}` is one vector, not {} numbers", formals[i].name, name,
                            end - first))

@@ -160,6 +160,35 @@ bool cone_between(const Interpreter &ev, std::span<const Argument> args,
     return true;
 }
 
+bool no_shape_before(Interpreter &ev, std::string_view name, const lang::Function &function,
+                     std::span<const Argument> args, Span callee) {
+    if (args.empty() || function.parameters.empty() || !function.parameters[0].type) return false;
+    using lang::TypeName;
+    const lang::TypeExpr &type = *function.parameters[0].type;
+    const bool takes_shape = type.kind == lang::TypeExpr::Kind::Name &&
+                             (type.named == TypeName::Shape || type.named == TypeName::AnyShape);
+    const bool turns = name == "rotate" && args.size() == 2 && !args[1].name &&
+                       args[0].value.kind == ValueKind::Shape &&
+                       args[1].value.kind == ValueKind::Vec && args[1].value.size == 3;
+    if (turns) {
+        report(ev, Code::TypeMismatch, args[1].span,
+               fmt::format("`angle` of `rotate` wants an `angle`, this is {}",
+                           describe(ev, args[1].value)))
+            .help("`.rotate_euler([x, y, z])` turns about all three axes, `.rotate(angle, axis)` "
+                  "about one",
+                  {{callee, "rotate_euler"}});
+        return true;
+    }
+    const bool numbers = std::ranges::all_of(args, [&](const Argument &a) {
+        return !a.trailing && a.value.kind != ValueKind::Poison && is_numeric(a.value);
+    });
+    const bool method = !args[0].name && args[0].span.begin < callee.begin;
+    if (!takes_shape || !numbers || method) return false;
+    report(ev, Code::MissingArgument, callee, fmt::format("`{}` has no shape to change", name))
+        .help(fmt::format("it stands behind one: `sphere(1).{}(…)`", name));
+    return true;
+}
+
 // -- what a call lacks ---------------------------------------------------------------------------
 
 std::string loop_variable(const Interpreter &ev, Span place) {
@@ -170,8 +199,10 @@ std::string loop_variable(const Interpreter &ev, Span place) {
         // the parameter of a lambda: `map(0..5, i => …)`
         const Around found = around(all, at);
         const std::size_t begin = found.open == all.npos ? 0 : found.open + 1;
-        const std::size_t arrow = all.substr(0, at).rfind("=>");
-        if (arrow != all.npos && arrow >= begin && around(all, arrow).open == found.open)
+        const std::size_t from = std::max(begin, at > farthest ? at - farthest : 0);
+        const std::size_t found_arrow = all.substr(from, at - from).rfind("=>");
+        const std::size_t arrow = found_arrow == all.npos ? all.npos : from + found_arrow;
+        if (arrow != all.npos && around(all, arrow).open == found.open)
             if (const auto name = word_before(all, skip_back(all, arrow)); !name.empty())
                 return std::string(name);
         if (found.open == all.npos) return {};
@@ -193,7 +224,9 @@ std::string seed_text(const Interpreter &ev, Span place) {
     const std::string variable = loop_variable(ev, place);
     const std::size_t line = before.rfind('\n', place.begin);
     // each of a loop's body is told apart by a second number
-    const std::size_t from = variable.empty() || line == before.npos ? 0 : line;
+    constexpr std::size_t most = 50'000; // bytes that are counted in
+    const std::size_t near = place.begin > most ? place.begin - most : 0;
+    const std::size_t from = variable.empty() || line == before.npos ? near : std::max(line, near);
     const std::size_t others = count_of(before.substr(from, place.begin - from), "random(") +
                                count_of(before.substr(from, place.begin - from), "random.");
     if (variable.empty()) return fmt::to_string(others + 1);

@@ -67,6 +67,8 @@ static Value call_closure(Interpreter &ev, const Value &callee, std::string_view
     const std::span<const Formal> formals = formals_of(ev, c);
     if (c.library && !inside_library(ev) && shape_out_of_place(ev, name, f, formals, args, call))
         return poison();
+    if (c.library && !inside_library(ev) && no_shape_before(ev, name, f, args, callee_span))
+        return poison();
     auto bound = bind_arguments(ev, name, formals, args, call, callee_span);
     if (!bound) return poison();
     if (c.library && !inside_library(ev) && color_in_quotes(ev, name, formals, *bound))

@@ -67,7 +67,10 @@ void declare(Interpreter &ev, std::uint32_t frame, Symbol name, Value value, boo
         if (!added) {
             report(ev, Code::DuplicateName, place,
                    fmt::format("`{}` is declared twice", ev.symbol_names[name]))
-                .label(f.bindings[it->second].declared, "first declared here");
+                .label(f.bindings[it->second].declared, "first declared here")
+                .help(is_function(value)
+                          ? "a function has one form: give the other a name of its own"
+                          : "give one of them another name");
             return;
         }
         if (frame != ev.prelude_frame && !ev.modules[ev.current_module].library && place.source) {

@@ -152,6 +152,21 @@ static bool is_whole_argument(const Interpreter &ev, Span place) {
            std::string_view("),").find(all[behind]) != std::string_view::npos;
 }
 
+// `scene { … }`, `scene.add(s)`: as a union, and away.
+static std::optional<Edit> scene_edit(const Interpreter &ev, const std::string &name, Span place) {
+    const std::string_view all = ev.sources[place.source].text;
+    const std::string_view behind = all.substr(place.end);
+    constexpr std::string_view add = ".add(";
+    if (name != "scene") return std::nullopt;
+    if (behind.starts_with(add)) {
+        const auto open = static_cast<std::uint32_t>(place.end + add.size() - 1);
+        return Edit{{place.source, place.begin, open}, ""};
+    }
+    const std::size_t next = behind.find_first_not_of(" \t");
+    if (next == behind.npos || behind[next] != '{') return std::nullopt;
+    return Edit{place, "union"};
+}
+
 // Whether a call of something behind the name's `.` follows.
 static bool calls_member(const Interpreter &ev, Span place) {
     const std::string_view behind =
@@ -201,8 +216,16 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string
             d.help("the point is the argument of a function: `implicit(p => length(p) - 1)`");
         return;
     }
+    if (ev.in_field > 0 && name.starts_with("sd")) { // a shape is none of a field's numbers
+        d.help("a function of the point is made of numbers: a ball is `length(p - c) - r`; the "
+               "library's shapes stand outside of it, as `sphere(r).translate(c)`");
+        return;
+    }
     const std::string_view way = way_from_elsewhere(name);
-    if (!way.empty()) d.help(std::string(way), unit_edit(ev, name, place));
+    if (const auto edit = of_user ? scene_edit(ev, name, place) : std::nullopt)
+        d.help(std::string(way), {*edit});
+    else if (!way.empty())
+        d.help(std::string(way), unit_edit(ev, name, place));
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{place, near}});
     if (name == "cube" || name == "square")
         d.note(fmt::format("a `{}` has its middle at the origin", near));

@@ -92,12 +92,13 @@ Fix remedy_of_duplicate(Interpreter &ev, std::string_view function, std::span<co
     return {fmt::format("`{}` stands first: `{}`", named.name->text, written), {{call, written}}};
 }
 
-Fix remedy_of_row(std::span<const Argument> row, int vector_size) {
+Fix remedy_of_row(std::span<const Argument> row, int vector_size, bool place) {
     Fix fix{"a vector is written in brackets: `[x, y, z]`", {}};
-    if (static_cast<int>(row.size()) != vector_size) return fix;
+    const bool flat = place && row.size() == 2 && vector_size == 3; // `translate(1, 2)`
+    if (static_cast<int>(row.size()) != vector_size && !flat) return fix;
     const Span first = row.front().span, last = row.back().span;
     fix.edits = {{{first.source, first.begin, first.begin}, "["},
-                 {{last.source, last.end, last.end}, "]"}};
+                 {{last.source, last.end, last.end}, flat ? ", 0]" : "]"}};
     return fix;
 }
 
@@ -284,6 +285,13 @@ void warn_of_bytes(Interpreter &ev, Span place, std::span<const Value> parts) {
         .help(fmt::format("write `{}` if parts of 255 are meant", hex), {{place, hex}});
 }
 
+// `45` of `45deg`.
+static std::string_view without_unit(std::string_view number) {
+    for (const std::string_view unit : {"deg", "turn", "rad"})
+        if (number.ends_with(unit)) number.remove_suffix(unit.size());
+    return number;
+}
+
 void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeName wanted,
                      Span place) {
     using lang::TypeName;
@@ -302,12 +310,18 @@ void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeN
                                  "made of a function of the point by `implicit(f, within: …)`");
     if (v.kind != ValueKind::String || !written.starts_with('"')) return;
     const std::string &inside = ev.strings[v.id];
-    if ((wanted == TypeName::Float || wanted == TypeName::Int) && parse_number(inside))
+    if ((wanted == TypeName::Float || wanted == TypeName::Int) &&
+        parse_number(without_unit(inside)))
         d.help("a number is written without quotes", {{place, inside}});
     if (const std::string axis = axis_text(ev, v, place); wanted == TypeName::Vec3 && !axis.empty())
         d.help("the axes are `X`, `Y` and `Z`, without quotes", {{place, axis}});
     if (wanted != TypeName::Color && wanted != TypeName::Material) return;
     const auto named = look_up(ev, ev.prelude_frame, intern(ev, inside));
+    if (inside.ends_with(".png") || inside.ends_with(".jpg") || inside.ends_with(".jpeg")) {
+        const std::string image = fmt::format("material(texture: image({}))", written);
+        d.help(fmt::format("a picture lies on a shape by `{}`", image), {{place, image}});
+        return;
+    }
     const std::string color = named && !is_function(*named) ? inside : color_in(inside);
     d.help("colours are written without quotes: `red`, `#ff0000`",
            color.empty() ? std::vector<Edit>{} : std::vector<Edit>{{place, color}});

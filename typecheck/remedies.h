@@ -119,13 +119,19 @@ std::optional<Edit> point_edit(const Interpreter &ev, const std::string &name, S
 Fix remedy_of_duplicate(Interpreter &ev, std::string_view function, std::span<const Argument> args,
                         const Argument &named, Span call);
 
-// For numbers in a row where one vector is wanted; the edits only where they are as many.
-Fix remedy_of_row(std::span<const Argument> row, int vector_size);
+// For numbers in a row where one vector is wanted; the edits only where they are as many, or two
+// for a place.
+Fix remedy_of_row(std::span<const Argument> row, int vector_size, bool place = false);
 
 // True, and reported, where the shape of a call stands behind what should follow it, or before what
 // should lead: `translate([1, 0, 0], s)`, `smooth_union(a, b, 0.1)`.
 bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Function &function,
                         std::span<const Formal> formals, std::span<const Argument> args, Span call);
+
+// True, and reported, where numbers alone are given to what changes a shape, `translate(1, 0, 0)`;
+// or a vector of angles to `rotate`.
+bool no_shape_before(Interpreter &ev, std::string_view name, const lang::Function &function,
+                     std::span<const Argument> args, Span callee);
 
 // True, and reported, where a material is given as a string: `s.paint("red")`.
 bool color_in_quotes(Interpreter &ev, std::string_view name, std::span<const Formal> formals,

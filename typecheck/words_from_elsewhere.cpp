@@ -31,6 +31,14 @@ std::string_view name_from_elsewhere(std::string_view name) {
         {"extrudeRotate", "revolve"},
         {"lathe", "revolve"},
         {"move", "translate"},
+        {"location", "translate"},
+        {"position", "translate"},
+        {"moveTo", "translate"},
+        {"setPosition", "translate"},
+        {"group", "union"},
+        {"Group", "union"},
+        {"combine", "union"},
+        {"merge", "union"},
         {"symmetry", "mirror"},
         {"lerp", "mix"},
         {"ln", "log"},
@@ -101,6 +109,51 @@ std::string_view name_from_elsewhere(std::string_view name) {
     return it == ours.end() ? std::string_view() : it->second;
 }
 
+// What is done otherwise here than in three.js, p5, Blender and GLSL.
+static std::string_view way_from_libraries(std::string_view name) {
+    static const std::unordered_map<std::string_view, std::string_view> ways = {
+        {"pop", "a transform holds for the shape that it stands behind, and for no other"},
+        {"resize", "a shape is made larger by `.scale([1, 1, 2])`, and has its size from its call"},
+        {"format", "a string shows a value where it is joined to it: `\"r = \" + r`"},
+        {"times", "many are made by a loop: `for i in 0..5 { … }`"},
+        {"view", "the shapes of a file are the scene, and a `camera(…)` looks at it"},
+        {"discard", "a field has a value everywhere: return a distance instead"},
+        {"any", "vectors are compared by their parts: `p.x > 1 or p.y > 1`"},
+        {"all", "vectors are compared by their parts: `p.x > 1 and p.y > 1`"},
+        {"greaterThan", "vectors are compared by their parts: `p.x > 1 or p.y > 1`"},
+        {"lessThan", "vectors are compared by their parts: `p.x < 1 and p.y < 1`"},
+        {"THREE", "there is no three.js here: a shape is made by a call, as `sphere(1)`"},
+        {"CSG", "shapes are combined by `|`, `-` and `&`"},
+        {"scene", "the shapes of a file are the scene: nothing is added to it"},
+        {"renderer", "a picture is made by `fathom render scene.sdf -o scene.png`"},
+        {"render", "a picture is made by `fathom render scene.sdf -o scene.png`"},
+        {"document", "there is no page: the shapes of a file are the scene"},
+        {"createCanvas", "the size of a picture is said where it is made: `fathom render --size`"},
+        {"frameCount", "what moves is computed of the seconds: `time`"},
+        {"performance", "the seconds are `time`"},
+        {"Date", "the seconds are `time`"},
+        {"millis", "the seconds are `time`"},
+        {"requestAnimationFrame",
+         "what moves is computed of the seconds: `.rotate(time, axis: Y)`"},
+        {"animate", "what moves is computed of the seconds: `.translate(y: sin(time))`"},
+        {"animation", "what moves is computed of the seconds: `.translate(y: sin(time))`"},
+        {"keyframe", "values at times are `keyframes(…)`, of the seconds `time`"},
+        {"pushMatrix", "a transform holds for the shape that it stands behind, and for no other"},
+        {"popMatrix", "a transform holds for the shape that it stands behind, and for no other"},
+        {"stroke", "a surface has no lines; a shape is given a colour by `.paint(…)`"},
+        {"noStroke", "a surface has no lines; leave it away"},
+        {"metal", "a metal is `material(diffuse: gold, specular: gold, exponent: 200)`"},
+        {"plastic", "a plastic is `material(diffuse: red, specular: white, exponent: 50)`"},
+        {"glass", "there is nothing that light passes through; a gloss is `exponent: 500`"},
+        {"Material", "a material is `material(diffuse: red, exponent: 50)`"},
+        {"__name__", "a file is run as it stands: leave the `if` away"},
+        {"is_undef", "every name has a value: leave the question away"},
+        {"modifiers", "edges are rounded by `rounded_box(size, r)`, or `.offset(r)` of a smaller "
+                      "shape"}};
+    const auto it = ways.find(name);
+    return it == ways.end() ? std::string_view() : it->second;
+}
+
 std::string_view way_from_elsewhere(std::string_view name) {
     static const std::unordered_map<std::string_view, std::string_view> ways = {
         {"slider", "a slider is declared by `param r = 1 in 0..2`"},
@@ -158,34 +211,6 @@ std::string_view way_from_elsewhere(std::string_view name) {
         {"Some", "every name has a value: leave `Some( … )` away"},
         {"Ok", "every name has a value: leave `Ok( … )` away"},
         {"unwrap_or", "every name has a value: leave it away"},
-        {"THREE", "there is no three.js here: a shape is made by a call, as `sphere(1)`"},
-        {"CSG", "shapes are combined by `|`, `-` and `&`"},
-        {"scene", "the shapes of a file are the scene: nothing is added to it"},
-        {"renderer", "a picture is made by `fathom render scene.sdf -o scene.png`"},
-        {"render", "a picture is made by `fathom render scene.sdf -o scene.png`"},
-        {"document", "there is no page: the shapes of a file are the scene"},
-        {"createCanvas", "the size of a picture is said where it is made: `fathom render --size`"},
-        {"frameCount", "what moves is computed of the seconds: `time`"},
-        {"performance", "the seconds are `time`"},
-        {"Date", "the seconds are `time`"},
-        {"millis", "the seconds are `time`"},
-        {"requestAnimationFrame",
-         "what moves is computed of the seconds: `.rotate(time, axis: Y)`"},
-        {"animate", "what moves is computed of the seconds: `.translate(y: sin(time))`"},
-        {"animation", "what moves is computed of the seconds: `.translate(y: sin(time))`"},
-        {"keyframe", "values at times are `keyframes(…)`, of the seconds `time`"},
-        {"pushMatrix", "a transform holds for the shape that it stands behind, and for no other"},
-        {"popMatrix", "a transform holds for the shape that it stands behind, and for no other"},
-        {"stroke", "a surface has no lines; a shape is given a colour by `.paint(…)`"},
-        {"noStroke", "a surface has no lines; leave it away"},
-        {"metal", "a metal is `material(diffuse: gold, specular: gold, exponent: 200)`"},
-        {"plastic", "a plastic is `material(diffuse: red, specular: white, exponent: 50)`"},
-        {"glass", "there is nothing that light passes through; a gloss is `exponent: 500`"},
-        {"Material", "a material is `material(diffuse: red, exponent: 50)`"},
-        {"__name__", "a file is run as it stands: leave the `if` away"},
-        {"is_undef", "every name has a value: leave the question away"},
-        {"modifiers", "edges are rounded by `rounded_box(size, r)`, or `.offset(r)` of a smaller "
-                      "shape"},
         {"orient", "a shape is turned by `.rotate(90deg, axis: X)`; `cylinder`, `torus` and such "
                    "lie along Y"},
         {"bevel",
@@ -213,7 +238,7 @@ std::string_view way_from_elsewhere(std::string_view name) {
         {"rotate_y", "write `.rotate(angle, axis: Y)`"},
         {"rotate_z", "write `.rotate(angle, axis: Z)`"}};
     const auto it = ways.find(name);
-    return it == ways.end() ? std::string_view() : it->second;
+    return it == ways.end() ? way_from_libraries(name) : it->second;
 }
 
 std::string_view way_of_type(std::string_view name) {
