@@ -149,7 +149,10 @@ bool Builder::foreign_group(Index at, bool list) {
     if (found == Tok::For) {
         const Index close = match(open);
         Diagnostic &d = diagnostics_.add(Code::WrongPlace, span(at), "a `for` has no value");
-        if (at == open + 1 && kind(open - 1) == Tok::Name)
+        const std::string list = at > open + 1 ? nested_loops(open, at) : std::string();
+        if (!list.empty() && list.find('\n') == std::string::npos) // `sum(x for x in l)`
+            d.help("write " + in_code(list), {{span(open + 1, close - 1), list}});
+        else if (at == open + 1 && kind(open - 1) == Tok::Name)
             d.help("a block takes it", {{span(open), " { "}, {span(close), " }"}});
         else
             d.help("write `[for … { … }]` for a list, `union { for … { … } }` for a shape");

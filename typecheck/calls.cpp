@@ -401,7 +401,7 @@ Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::C
             }
             if (object.kind == ValueKind::Shape) help_with_method(d, *m, ast, call);
             if (const auto way = way_from_elsewhere(m->name.text); !d.fix && !way.empty())
-                d.help(std::string(way));
+                d.help(std::string(way), edits_of_list_method(ev, ast, *m, call, place));
             if (!d.fix && !near.empty())
                 d.help(fmt::format("did you mean `{}`?", near), {{m->name.span, near}});
             return poison();

@@ -78,6 +78,61 @@ std::string operand_source(const Interpreter &ev, Span span) {
 
 Span whole_argument(const Argument &a) { return a.name ? join(a.name->span, a.span) : a.span; }
 
+// A text as its words and signs; spaces go with what stands before them.
+static std::vector<std::string_view> words_of(std::string_view all) {
+    const auto is_word = [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+               c == '_' || c == '.';
+    };
+    std::vector<std::string_view> words;
+    for (std::size_t begin = 0; begin < all.size();) {
+        std::size_t end = begin + 1;
+        if (is_word(all[begin]) && all[begin] != '.')
+            while (end < all.size() && is_word(all[end])) ++end;
+        words.push_back(all.substr(begin, end - begin));
+        begin = end;
+    }
+    return words;
+}
+
+std::vector<Edit> least_edits(const Interpreter &ev, Span place, std::string_view written) {
+    constexpr std::size_t most_words = 300; // the table is quadratic
+    const std::string_view all = text(ev.sources, place);
+    const auto before = words_of(all), after = words_of(written);
+    const std::size_t n = before.size(), m = after.size();
+    if (n > most_words || m > most_words) return {{place, std::string(written)}};
+    // the length of the longest common row of words behind each pair of places
+    std::vector<std::size_t> same((n + 1) * (m + 1));
+    const auto at = [&](std::size_t i, std::size_t k) -> std::size_t & {
+        return same[i * (m + 1) + k];
+    };
+    for (std::size_t i = n; i-- > 0;)
+        for (std::size_t k = m; k-- > 0;)
+            at(i, k) = before[i] == after[k] ? at(i + 1, k + 1) + before[i].size()
+                                             : std::max(at(i + 1, k), at(i, k + 1));
+    std::vector<Edit> edits;
+    std::uint32_t begin = place.begin, end = place.begin; // of what goes
+    std::string fresh;
+    const auto flush = [&] {
+        if (begin < end || !fresh.empty()) edits.push_back({{place.source, begin, end}, fresh});
+        fresh.clear();
+    };
+    std::size_t i = 0, k = 0;
+    while (i < n || k < m) {
+        if (i < n && k < m && before[i] == after[k]) {
+            flush();
+            end += static_cast<std::uint32_t>(before[i].size());
+            begin = end;
+            ++i, ++k;
+        } else if (k < m && (i == n || at(i, k + 1) >= at(i + 1, k)))
+            fresh += after[k++];
+        else
+            end += static_cast<std::uint32_t>(before[i++].size());
+    }
+    flush();
+    return edits;
+}
+
 // -- the order of arguments ----------------------------------------------------------------------
 
 Fix remedy_of_duplicate(Interpreter &ev, std::string_view function, std::span<const Argument> args,
@@ -158,7 +213,7 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
     const auto say = [&](std::string message, std::string written) {
         Diagnostic &d = report(ev, Code::TypeMismatch, args[0].span, std::move(message));
         if (written.find('\n') == std::string::npos)
-            d.help(fmt::format("write `{}`", written), {{call, written}});
+            d.help(fmt::format("write `{}`", written), least_edits(ev, call, written));
         return true;
     };
     if (const auto order =
@@ -183,7 +238,7 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
                        ? fmt::format("the shape stands first, before what `{}` does to it", name)
                        : fmt::format("`{}` of `{}` stands before this", formals[wrong].name, name));
         if (written.find('\n') == std::string::npos)
-            d.help(fmt::format("write `{}`", written), {{call, written}});
+            d.help(fmt::format("write `{}`", written), least_edits(ev, call, written));
         return true;
     }
     if (takes_shape && !args[0].name && !is_shape(args[0])) {

@@ -51,6 +51,13 @@ std::vector<Edit> part_of_shape(Interpreter &ev, const File &ast, const lang::Me
 // `s.material("gold")`, `random.uniform(0, 1)`.
 bool is_foreign_method(Interpreter &ev, const Value &object, const File &ast,
                        const lang::Member &member, const lang::Call &call, Span place);
+// For `l.push(x)` in a loop, `l.forEach(f)`, `l.sum()`: what does the same. Empty where that is not
+// plain.
+std::vector<Edit> edits_of_list_method(const Interpreter &ev, const File &ast,
+                                       const lang::Member &member, const lang::Call &call,
+                                       Span place);
+// The edits that make one text of another and leave what both have in that order.
+std::vector<Edit> least_edits(const Interpreter &ev, Span place, std::string_view written);
 // `-s` of a shape.
 void report_negated_shape(Interpreter &ev, Span place, Span operand);
 // For a function that should be of the point, and has a parameter for each of its parts; and for one
