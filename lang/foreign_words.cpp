@@ -49,6 +49,8 @@ constexpr ForeignWord statement_words[] = {
     {"try", "a scene catches nothing", "a condition is tested by `assert(condition, \"why\")`"},
     {"except", "a scene catches nothing", "a condition is tested by `assert(condition, \"why\")`"},
     {"finally", "a scene catches nothing", "leave the word away"},
+    {"with", "a transform stands behind the shape that it moves",
+     "write `sphere(1).translate(x: 1)`"},
     {"loop", "a loop is written `for i in 0..8 { … }`", "write `for i in 0..n { … }`"},
     {"foreach", "a loop is written `for i in 0..8 { … }`", "write `for x in list { … }`"},
     {"unless", "a choice is written with `if`", "write `if not (condition) { … }`"},

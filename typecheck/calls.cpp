@@ -315,6 +315,13 @@ static void help_with_method(Diagnostic &d, const lang::Member &member, const Fi
     if (name == "color" || name == "colour" || name == "colorize")
         d.help("a shape is given a colour or a material by `.paint(…)`",
                {{member.name.span, "paint"}});
+    if (name == "texture" && call.arguments.size() == 1 && !call.arguments[0].name) {
+        const Span image = ast.exprs[call.arguments[0].value].span;
+        d.help("a picture lies on a shape by `.paint(material(texture: image(…)))`",
+               {{member.name.span, "paint"},
+                {{image.source, image.begin, image.begin}, "material(texture: image("},
+                {{image.source, image.end, image.end}, "))"}});
+    }
     const char axis = name.empty() ? ' ' : name.back();
     const char upper = axis >= 'x' && axis <= 'z' ? static_cast<char>(axis - 'x' + 'X') : axis;
     if (upper < 'X' || upper > 'Z') return;

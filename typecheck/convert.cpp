@@ -302,6 +302,8 @@ static void want(Interpreter &ev, const Value &v, Span place, What what, std::st
     using lang::TypeName;
     if (wanted == "a color") help_with_value(ev, d, v, TypeName::Color, place);
     if (wanted == "a number") help_with_value(ev, d, v, TypeName::Float, place);
+    if (wanted == "a vec3" && v.kind == ValueKind::Shape)
+        d.help("a shape tells no place: write it as a vector, `[0, 0, 0]`");
     if (wanted == "a vec3") help_with_value(ev, d, v, TypeName::Vec3, place);
     if (v.kind == ValueKind::Shape && wanted == "a color") help_with_shape(d, "color");
 }
