@@ -13,6 +13,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include <boost/multiprecision/cpp_int.hpp>
+
 namespace fathom::test {
 
 using MeshPoint = std::array<float, 3>;
@@ -46,14 +48,40 @@ inline Exact cross_of(const Exact &a, const Exact &b) {
 inline Real dot_of(const Exact &a, const Exact &b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-// 1, 0 or -1: on which side of the plane of a, b and c the point p lies.
+// 1, 0 or -1: the sign of (b - a) x (c - a) . (p - a) in whole numbers: floats are such, of 2^-149.
+inline int exact_side(const Exact &a, const Exact &b, const Exact &c, const Exact &p) {
+    for (std::size_t i = 0; i < 3; ++i)
+        if (a[i] == b[i] && a[i] == c[i] && a[i] == p[i]) return 0;
+    using boost::multiprecision::cpp_int_backend;
+    using Whole = boost::multiprecision::number<
+        cpp_int_backend<1024, 1024, boost::multiprecision::signed_magnitude,
+                        boost::multiprecision::unchecked, void>>;
+    const auto whole = [](Real x) {
+        int exponent = 0;
+        const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 24));
+        return mantissa == 0 ? Whole(0) : Whole(mantissa) << (exponent - 24 + 149);
+    };
+    std::array<Whole, 3> u, v, w;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Whole from = whole(a[i]);
+        u[i] = whole(b[i]) - from, v[i] = whole(c[i]) - from, w[i] = whole(p[i]) - from;
+    }
+    const Whole sum = (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] +
+                      (u[0] * v[1] - u[1] * v[0]) * w[2];
+    return sum.sign();
+}
+// 1, 0 or -1: on which side of the plane of a, b and c the point p lies, without rounding. All are
+// floats.
 inline int side_of(const Exact &a, const Exact &b, const Exact &c, const Exact &p) {
     const Exact u = minus(b, a), v = minus(c, a), w = minus(p, a);
     const Exact n = cross_of(u, v);
     const Real value = dot_of(n, w);
     Real size = 0;
-    for (std::size_t i = 0; i < 3; ++i) size += std::fabs(n[i] * w[i]);
-    if (std::fabs(value) <= 1e-17L * size) return 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+        size += (std::fabs(u[j] * v[k]) + std::fabs(u[k] * v[j])) * std::fabs(w[i]);
+    }
+    if (std::fabs(value) <= 1e-17L * size) return exact_side(a, b, c, p);
     return value > 0 ? 1 : -1;
 }
 
@@ -123,11 +151,40 @@ inline bool meets(const Exact &p, const Exact &q, const std::array<Exact, 3> &t)
     return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
 }
 
+// Whether two triangles in one plane overlap: no side of one has the other all beyond it.
+inline bool overlap_flat(const std::array<Exact, 3> &a, const std::array<Exact, 3> &b) {
+    const Exact n = cross_of(minus(a[1], a[0]), minus(a[2], a[0]));
+    std::size_t axis = 0; // down which it is seen best
+    for (std::size_t i = 1; i < 3; ++i)
+        if (std::fabs(n[i]) > std::fabs(n[axis])) axis = i;
+    const auto turn = [&](const Exact &p, const Exact &q, const Exact &r) {
+        Exact above = p; // side_of of a plane along the axis is the turn of its three points
+        above[axis] = p[axis] < 0 ? 1 : -1;
+        return side_of(p, q, above, r) * (p[axis] < 0 ? 1 : -1);
+    };
+    for (const bool swap : {false, true}) {
+        const auto &s = swap ? b : a, &t = swap ? a : b;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Exact &p = s[k], &q = s[(k + 1) % 3];
+            const int own = turn(p, q, s[(k + 2) % 3]);
+            if (std::ranges::all_of(t, [&](const Exact &r) { return own * turn(p, q, r) <= 0; }))
+                return false;
+        }
+    }
+    return true;
+}
+
 // Whether two triangles have more in common than the vertices and the edge that they share.
 inline bool crossing_pair(std::span<const MeshPoint> points, const MeshTriangle &s,
                           const MeshTriangle &t) {
     std::array<Exact, 3> a, b;
     for (std::size_t k = 0; k < 3; ++k) a[k] = exact(points[s[k]]), b[k] = exact(points[t[k]]);
+    for (std::size_t i = 0; i < 3; ++i)
+        if (std::max({a[0][i], a[1][i], a[2][i]}) < std::min({b[0][i], b[1][i], b[2][i]}) ||
+            std::max({b[0][i], b[1][i], b[2][i]}) < std::min({a[0][i], a[1][i], a[2][i]}))
+            return false;
+    if (std::ranges::all_of(b, [&](const Exact &p) { return side_of(a[0], a[1], a[2], p) == 0; }))
+        return overlap_flat(a, b);
     std::vector<std::pair<std::size_t, std::size_t>> shared;
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j)
@@ -148,13 +205,7 @@ inline bool crossing_pair(std::span<const MeshPoint> points, const MeshTriangle 
                 return true;
         return false;
     }
-    if (shared.size() == 3) return true;
-    // An edge in common: folded flat onto each other, or not.
-    const std::size_t j = 3 - shared[0].second - shared[1].second;
-    if (side_of(a[0], a[1], a[2], b[j]) != 0) return false;
-    const Exact m = cross_of(minus(a[1], a[0]), minus(a[2], a[0])),
-                n = cross_of(minus(b[1], b[0]), minus(b[2], b[0]));
-    return dot_of(m, n) < 0;
+    return shared.size() == 3; // else an edge in common, and no plane
 }
 
 // Pairs of triangles that cross, by a grid of boxes.

@@ -173,6 +173,26 @@ TEST_CASE("the survey counts what is wrong with a mesh") {
     CHECK(test::survey(two, pinched).pinched == 1);
 }
 
+TEST_CASE("triangles are judged without rounding") {
+    // In one plane: apart, with a side in common, and one over the other.
+    const std::vector<test::MeshPoint> flat{{0, 0, 1},       {1, 0, 1},    {0, 1, 1}, {1, 1, 1},
+                                            {0.9f, 0.2f, 1}, {0.1f, 0, 1}, {3, 0, 1}, {3, 1, 1}};
+    CHECK(test::crossings(flat, std::vector<test::MeshTriangle>{{0, 1, 2}, {1, 3, 2}}) == 0);
+    CHECK(test::crossings(flat, std::vector<test::MeshTriangle>{{0, 1, 2}, {1, 6, 7}}) == 0);
+    CHECK(test::crossings(flat, std::vector<test::MeshTriangle>{{0, 1, 2}, {4, 3, 5}}) == 1);
+    CHECK(test::crossings(flat, std::vector<test::MeshTriangle>{{0, 1, 2}, {0, 1, 4}}) == 1);
+    // A strip that is flat but for a billionth of a billionth; a way that ends so far before a plane.
+    const float tiny = 3.46944695e-18f;
+    const std::vector<test::MeshPoint> strip{
+        {0.15695107f, -0.124024272f, 7.5e-10f},  {0.297438741f, tiny, -5.6e-9f},
+        {0.15695107f, tiny, -5.6e-9f},           {0.297438741f, -0.124024272f, 7.5e-10f},
+        {0.437926412f, -0.124024272f, 7.5e-10f}, {0.437926412f, 0, -5.6e-9f}};
+    CHECK(test::crossings(strip, std::vector<test::MeshTriangle>{{0, 1, 2}, {3, 4, 5}}) == 0);
+    const test::Exact a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
+    CHECK(test::side_of(a, b, c, {0.3L, 0.3L, 1e-40L}) == 1);
+    CHECK(test::side_of({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, -1 + 0x1p-24L}) == 1);
+}
+
 TEST_CASE("a mesh can be cancelled") {
     mesh::Settings settings;
     int calls = 0;
