@@ -142,8 +142,9 @@ struct Look {
     }
 
     // Slabs of one kind, of which those are left that may have something of the other sign: how wide
-    // all together are once they are thin.
-    std::optional<double> thin_out(const Place &place, std::vector<Slab> slabs) {
+    // all together are once they are thin. `planes`: these, added to what is there.
+    std::optional<double> thin_out(const Place &place, std::vector<Slab> slabs,
+                                   std::vector<Slab> *planes = nullptr) {
         double width = 0;
         for (int round = 0; round < most_cuttings && !slabs.empty(); ++round) {
             std::vector<Slab> next, done;
@@ -161,12 +162,19 @@ struct Look {
             for (const Slab &slab : done) {
                 if (slab.hi - slab.lo > most_thinnest * thinnest(slab)) return std::nullopt;
                 width += width_of(slab);
+                if (planes) planes->push_back(slab);
             }
             if (width > most_thin * thin) return std::nullopt;
             slabs = std::move(next);
             leave_open(place, slabs);
         }
         return slabs.empty() ? std::optional(width) : std::nullopt;
+    }
+
+    // As much again at each end of a thin slab: a plane between two slabs lies in both.
+    float more_about(const Slab &slab) const {
+        return std::max({slab.hi - slab.lo, 2 * ulp_of(slab),
+                         2 * static_cast<float>(directions[slab.across].play)});
     }
 
     // The rest of a place beyond one of its ends across a direction, as far as nothing is there, and a
@@ -187,9 +195,7 @@ struct Look {
             last = high ? parts.back() : parts.front();
         }
         if (!is_thin(last) || at_end()) return std::nullopt;
-        // As much again: a plane between two slabs lies in both.
-        const float more = std::max(
-            {last.hi - last.lo, 2 * ulp_of(last), 2 * static_cast<float>(directions[d].play)});
+        const float more = more_about(last);
         (high ? last.lo : last.hi) += high ? -more : more;
         rest = place;
         (high ? rest.ends[d][1] : rest.ends[d][0]) = high ? last.lo : last.hi;
@@ -197,7 +203,71 @@ struct Look {
         return width_of(last);
     }
 
-    // Across each direction in turn; then where planes meet, so that one of them is stripped off first.
+    // The columns of a place along an axis, an eighth as wide as it, at its four edges.
+    std::array<Place, 4> columns(const Place &place, std::size_t axis) const {
+        std::array<Place, 4> made;
+        made.fill(place);
+        for (std::size_t k = 0; k < 4; ++k)
+            for (std::size_t n = 1; n < 3; ++n) {
+                auto &[lo, hi] = made[k].ends[(axis + n) % 3];
+                const auto part = static_cast<float>((double(hi) - lo) / cuts);
+                if (k >> (n - 1) & 1)
+                    lo = std::max(lo, hi - part);
+                else
+                    hi = std::min(hi, lo + part);
+            }
+        return made;
+    }
+
+    // The thin slabs across a direction in which there is something of the other sign, in the first
+    // column of a place that has such slabs and nothing else; none: there is no such column.
+    std::vector<Slab> planes_across(const Place &place, std::size_t d) {
+        const std::array<double, 3> &slope = directions[d].level.gradient;
+        std::size_t axis = d;
+        if (d >= 3)
+            axis = static_cast<std::size_t>(
+                std::ranges::max_element(slope, {}, [](double x) { return std::fabs(x); }) -
+                slope.begin());
+        for (const Place &column : columns(place, axis)) {
+            std::vector<Slab> slabs, planes;
+            cut_up({d, place.ends[d][0], place.ends[d][1]}, slabs);
+            leave_open(column, slabs);
+            if (slabs.empty() || slabs.size() > most_open) continue;
+            if (thin_out(column, slabs, &planes)) return planes;
+        }
+        return {};
+    }
+
+    // Where planes cross each other, what lies between those of one direction is cut up along the others.
+    std::optional<double> width_between(const Place &place, std::size_t d, int strips) {
+        std::vector<Slab> planes = planes_across(place, d);
+        if (planes.empty() || planes.size() > most_open) return std::nullopt;
+        std::ranges::sort(planes, {}, &Slab::lo);
+        double width = 0;
+        Place rest = place;
+        for (std::size_t k = 0; k <= planes.size(); ++k) {
+            rest.ends[d][1] = place.ends[d][1];
+            float next = place.ends[d][1]; // where the part behind the plane begins
+            if (k < planes.size()) {
+                const float more = more_about(planes[k]);
+                planes[k].lo -= more, planes[k].hi += more;
+                rest.ends[d][1] = std::min(rest.ends[d][1], planes[k].lo);
+                next = planes[k].hi;
+                width += width_of(planes[k]);
+            }
+            if (rest.ends[d][0] < rest.ends[d][1]) {
+                const auto within = width_in(rest, strips - 1);
+                if (!within) return std::nullopt;
+                width += *within;
+            }
+            if (width > most_thin * thin) return std::nullopt;
+            rest.ends[d][0] = std::max(rest.ends[d][0], next);
+        }
+        return width;
+    }
+
+    // Across each direction in turn; then where planes meet, so that one of them is stripped off first;
+    // then where they cross.
     std::optional<double> width_in(const Place &place, int strips) {
         std::vector<std::vector<Slab>> open(directions.size());
         std::vector<Slab> slabs;
@@ -228,6 +298,10 @@ struct Look {
                     width && *width + *stripped <= most_thin * thin)
                     return *width + *stripped;
             }
+        for (const std::size_t d : order) {
+            if (runs > most_runs) return std::nullopt;
+            if (const auto width = width_between(place, d, strips)) return width;
+        }
         return std::nullopt;
     }
 };

@@ -143,6 +143,34 @@ TEST_CASE("planes that meet in an edge or a corner are found where it is looked 
         seam_in("(box(2) - box(1)) | box(0.999)", {0.45f, 0.4f, 0.45f}, {0.57f, 0.56f, 0.6f}));
 }
 
+TEST_CASE("planes that cross in an edge or a corner are found where it is looked closely") {
+    const mesh::Point lo{-0.05f, -0.04f, 0.1f}, hi{0.07f, 0.06f, 0.2f};
+    for (const char *text :
+         {"box(1).repeat([1, 1, 1], count: [2, 2, 2])",
+          "box_frame(1, thickness: 0.25).repeat([1, 1, 1], count: [2, 2, 2])",
+          // One plane ends at another.
+          "box([2, 1, 2]).translate(y: -0.5) | box(1).translate([0.5, 0.5, 0]) | "
+          "box(1).translate([-0.5, 0.5, 0])"}) {
+        INFO(text);
+        CHECK_FALSE(seam_in(text, lo, hi, false));
+        const auto seam = seam_in(text, lo, hi);
+        REQUIRE(seam);
+        CHECK((seam->solid && seam->width < 6e-6));
+    }
+    for (const char *turn : {"", ".rotate(0.3, axis: [1, 2, 3])"}) {
+        INFO(turn);
+        const std::string cubes = "box(1).repeat([1, 1, 1], count: [2, 2, 2])";
+        const auto corner = seam_in(cubes + turn, {-0.05f, -0.04f, -0.03f}, {0.07f, 0.06f, 0.05f});
+        REQUIRE(corner);
+        CHECK((corner->solid && corner->width < 6e-6));
+        // A gap that is wide enough, and a hole along the edge, are none.
+        CHECK_FALSE(seam_in("box(1).repeat([1, 1.00005, 1], count: [2, 2, 2])" + std::string(turn),
+                            {-0.05f, -0.04f, -0.03f}, {0.07f, 0.06f, 0.05f}));
+        CHECK_FALSE(seam_in("(" + cubes + " - box([0.001, 0.001, 3]))" + turn,
+                            {-0.05f, -0.04f, -0.03f}, {0.07f, 0.06f, 0.05f}));
+    }
+}
+
 TEST_CASE("numbers on the way change at least as fast as is said") {
     std::size_t seen = 0;
     for (const char *text : {"box(1).rotate(0.3, axis: [1, 2, 3]) | cylinder(0.3, 2)",
