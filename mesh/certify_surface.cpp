@@ -109,7 +109,7 @@ struct LeafLook {
         tape = shortened(evaluator, tape, 0);
     }
 
-    bool is_seam(const Box &box, Seen seen) {
+    bool is_seam(const Box &box, const Sighting &seen) {
         if (budget.divisions < seam_work) return false;
         const bool closely = budget.close_runs > 0;
         const auto [seam, runs] = search_seam(evaluator, *tape, boxes, {box.lo, box.hi}, seen,
@@ -133,7 +133,7 @@ struct LeafLook {
             extents.clear();
             for (const Box &box : some)
                 if (box.far || !far_alone) extents.push_back({box.lo, box.hi});
-            const std::vector<Seen> seen = look_for_seams(
+            const std::vector<Sighting> seen = look_for_seams(
                 evaluator, *tape, extents, seam_thickness(inquiry.made.octree.lattice));
             std::size_t next = 0;
             for (const Box &box : some) {
@@ -196,7 +196,7 @@ Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
         if (open.empty()) break;
         if (depth == 0) look.shorten_tape(whole);
         const bool last = depth == deepest || searched;
-        if (depth % seam_depth == 0) look.leave_out_seams(open, last, depth == 0);
+        if (depth % seam_depth == 0) look.leave_out_seams(open, last, depth == 0 && node.crossed());
         if (open.empty()) break;
         if (last || open.size() > budget.divisions) {
             reach.decided = false;

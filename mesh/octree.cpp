@@ -251,7 +251,7 @@ void measure_seams(const Octree &octree, Divider &divider, std::span<const Cell>
                            point_of(octree.lattice, corner(cell.at, side, 7))});
         asked.push_back(k);
     }
-    const std::vector<Seen> seen = look_for_seams(divider.evaluator, tape, extents, thin);
+    const std::vector<Sighting> seen = look_for_seams(divider.evaluator, tape, extents, thin);
     for (std::size_t n = 0; n < asked.size(); ++n) {
         const Node &node = octree.nodes[static_cast<std::size_t>(cells[asked[n]].node)];
         const auto seam =

@@ -60,8 +60,27 @@ std::vector<std::size_t> near_surface(Evaluator &evaluator, const cpu::ShortTape
 struct Suspect {
     std::size_t number = 0; // of the box
     bool solid = false;
-    float first = 0, nearest = 0; // to 0 of all values: of the first step, and of all
+    float first = 0, nearest = 0;               // to 0 of all values: of the first step, and of all
+    std::array<std::vector<float>, 3> planes{}; // as Sighting's, by the last step
 };
+
+// Where the field is 0 beyond a place, if it is as steep all the way and along an axis.
+void guess_plane(const std::array<std::vector<float>, 4> &slopes, std::size_t k, const Point &at,
+                 const Extent &box, double thin, Suspect &suspect) {
+    constexpr double straight = 0.9999; // of a slope's square
+    constexpr std::size_t most_planes = 2;
+    const double squares = squared_slope(slopes, k);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double slope = slopes[1 + i][k];
+        if (!(squares > 0) || slope * slope < straight * squares) continue;
+        const auto guess = static_cast<float>(at[i] - slopes[0][k] / slope);
+        std::vector<float> &planes = suspect.planes[i];
+        if (guess > box.lo[i] && guess < box.hi[i] && planes.size() < most_planes &&
+            std::ranges::none_of(planes,
+                                 [&](float plane) { return std::fabs(plane - guess) < 8 * thin; }))
+            planes.push_back(guess);
+    }
+}
 
 // Takes one step from each place of a box towards 0, and beyond. False: it holds no seam.
 bool step_in(const std::array<std::vector<float>, 4> &slopes, std::size_t from, int step,
@@ -76,6 +95,9 @@ bool step_in(const std::array<std::vector<float>, 4> &slopes, std::size_t from, 
         least = std::min(least, std::fabs(value));
     }
     suspect.nearest = std::min(suspect.nearest, least);
+    suspect.planes = {};
+    for (std::size_t k = from; k < from + places; ++k)
+        guess_plane(slopes, k, points[k], box, thin, suspect);
     if (step == few_steps && suspect.nearest > a_little * suspect.first) return false;
     for (std::size_t k = from; k < from + places; ++k) {
         const double squares = squared_slope(slopes, k);
@@ -100,11 +122,11 @@ void keep_places(const std::vector<std::size_t> &kept, Points &points) {
 
 } // namespace
 
-std::vector<Seen> look_for_seams(Evaluator &evaluator, const cpu::ShortTape &tape,
-                                 std::span<const Extent> boxes, double thin) {
+std::vector<Sighting> look_for_seams(Evaluator &evaluator, const cpu::ShortTape &tape,
+                                     std::span<const Extent> boxes, double thin) {
     constexpr int steps = 6;
     constexpr float nearer = 0.25f; // than the nearest place at first
-    std::vector<Seen> seen(boxes.size(), Seen::NoSeam);
+    std::vector<Sighting> seen(boxes.size());
     const std::vector<std::size_t> near = near_surface(evaluator, tape, boxes);
     Points points;
     for (const std::size_t n : near) add_places(boxes[n], points);
@@ -114,7 +136,7 @@ std::vector<Seen> look_for_seams(Evaluator &evaluator, const cpu::ShortTape &tap
     std::vector<std::size_t> kept; // where the places of those begin
     for (std::size_t n = 0; n < near.size(); ++n) {
         const std::span<const float> here = std::span(values).subspan(n * places, places);
-        Suspect suspect{near[n], here[0] <= 0, std::numeric_limits<float>::infinity(), 0};
+        Suspect suspect{near[n], here[0] <= 0, std::numeric_limits<float>::infinity(), 0, {}};
         for (const float value : here) suspect.first = std::min(suspect.first, std::fabs(value));
         suspect.nearest = suspect.first;
         if (!std::ranges::all_of(here, [&](float v) { return (v <= 0) == suspect.solid; }))
@@ -137,9 +159,12 @@ std::vector<Seen> look_for_seams(Evaluator &evaluator, const cpu::ShortTape &tap
         keep_places(kept, points);
         suspects = std::move(left);
     }
-    for (const Suspect &suspect : suspects)
-        if (suspect.nearest <= nearer * suspect.first)
-            seen[suspect.number] = suspect.solid ? Seen::MaySolid : Seen::MayEmpty;
+    for (Suspect &suspect : suspects)
+        if (suspect.nearest <= nearer * suspect.first) {
+            for (auto &planes : suspect.planes) std::ranges::sort(planes);
+            seen[suspect.number] = {suspect.solid ? Seen::MaySolid : Seen::MayEmpty,
+                                    std::move(suspect.planes)};
+        }
     return seen;
 }
 

@@ -17,9 +17,15 @@ struct Extent {
 // gaps, or empty but for sheets.
 enum class Seen : std::uint8_t { NoSeam, MaySolid, MayEmpty };
 
+struct Sighting {
+    Seen seen = Seen::NoSeam;
+    // Along each axis: where planes at right angles to it seem to lie.
+    std::array<std::vector<float>, 3> planes{};
+};
+
 // `thin`: of slabs, as in seam_in. The boxes share the runs of the tape, which holds in all of them.
-std::vector<Seen> look_for_seams(Evaluator &evaluator, const cpu::ShortTape &tape,
-                                 std::span<const Extent> boxes, double thin);
+std::vector<Sighting> look_for_seams(Evaluator &evaluator, const cpu::ShortTape &tape,
+                                     std::span<const Extent> boxes, double thin);
 
 // The slopes at those samples, of one box.
 void slopes_in(Evaluator &evaluator, const cpu::ShortTape &tape, const Extent &box,

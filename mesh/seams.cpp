@@ -10,7 +10,7 @@ namespace fathom::mesh {
 namespace {
 
 constexpr std::size_t cuts = 8;        // that a slab is cut into
-constexpr std::size_t most_open = 3;   // at one time: a plane lies in two at most
+constexpr std::size_t most_open = 3;   // at one time, but for guesses
 constexpr int most_cuttings = 24;      // floats cannot tell more cuts of cuts apart
 constexpr int end_cuttings = 3;        // … of what seems to reach the end of a box
 constexpr std::size_t most_levels = 9; // that are tried
@@ -53,6 +53,24 @@ std::vector<std::array<float, 2>> ranges_tied(const Tie &tie,
     return tied;
 }
 
+// The places in a slab where planes are guessed are thin slabs of their own; what is left beside them.
+void cut_out(const Slab &slab, const std::vector<float> &planes, double thin,
+             std::vector<Slab> &to) {
+    float from = slab.lo;
+    const auto add = [&](float until) {
+        if (!(from < until)) return;
+        to.push_back({slab.across, from, until});
+        from = until;
+    };
+    for (const float plane : planes) { // from the least
+        const auto lo = static_cast<float>(plane - thin), hi = static_cast<float>(plane + thin);
+        if (!(lo > from && hi < slab.hi)) continue;
+        add(lo);
+        add(hi);
+    }
+    add(slab.hi);
+}
+
 // Parts of a slab. Round planes, 0 above all, are where things are put: where it lies in the slab it
 // is between two of them.
 void cut_up(const Slab &slab, std::vector<Slab> &to) {
@@ -85,7 +103,8 @@ struct Look {
     cpu::Boxes &boxes;
     bool solid = false;
     double thin = 0;
-    std::vector<Across> directions;
+    const Sighting &sighting;
+    std::vector<Across> directions{};
     std::size_t runs = 0; // of the tape over boxes
 
     // Takes those slabs of a place away in which there is nothing of the other sign.
@@ -121,6 +140,16 @@ struct Look {
         slabs = std::move(left);
     }
 
+    // The parts of a whole place across a direction.
+    std::vector<Slab> parts_across(const Place &place, std::size_t d) const {
+        constexpr double about = 3; // thin slabs: what a guess may be off
+        std::vector<Slab> parts, made;
+        cut_up({d, place.ends[d][0], place.ends[d][1]}, parts);
+        if (d >= 3) return parts;
+        for (const Slab &part : parts) cut_out(part, sighting.planes[d], about * thin, made);
+        return made;
+    }
+
     // How wide at most the places are along one axis at which what was cut has the values of a slab.
     double width_of(const Slab &slab) const {
         const double width = double(slab.hi) - slab.lo;
@@ -141,6 +170,11 @@ struct Look {
                width_of(slab) <= thin;
     }
 
+    // So many slabs may be open at a time: a plane lies in two at most, and a guess divides one.
+    std::size_t open_at_most(std::size_t d) const {
+        return most_open + (d < 3 ? 2 * sighting.planes[d].size() : 0);
+    }
+
     // Slabs of one kind, of which those are left that may have something of the other sign: how wide
     // all together are once they are thin. `planes`: these, added to what is there.
     std::optional<double> thin_out(const Place &place, std::vector<Slab> slabs,
@@ -158,13 +192,14 @@ struct Look {
                 } else {
                     done.push_back(slab);
                 }
-            if (open_ones > most_open || slabs.size() > most_thin_slabs) return std::nullopt;
+            if (open_ones > open_at_most(slabs[0].across) || slabs.size() > most_thin_slabs)
+                return std::nullopt;
             for (const Slab &slab : done) {
                 if (slab.hi - slab.lo > most_thinnest * thinnest(slab)) return std::nullopt;
                 width += width_of(slab);
                 if (planes) planes->push_back(slab);
             }
-            if (width > most_thin * thin) return std::nullopt;
+            if (width > most_thin * thin || next.size() > cpu::max_boxes) return std::nullopt;
             slabs = std::move(next);
             leave_open(place, slabs);
         }
@@ -229,19 +264,19 @@ struct Look {
                 std::ranges::max_element(slope, {}, [](double x) { return std::fabs(x); }) -
                 slope.begin());
         for (const Place &column : columns(place, axis)) {
-            std::vector<Slab> slabs, planes;
-            cut_up({d, place.ends[d][0], place.ends[d][1]}, slabs);
+            std::vector<Slab> slabs = parts_across(place, d), planes;
             leave_open(column, slabs);
-            if (slabs.empty() || slabs.size() > most_open) continue;
-            if (thin_out(column, slabs, &planes)) return planes;
+            if (slabs.empty() || slabs.size() > open_at_most(d)) continue;
+            if (thin_out(column, slabs, &planes) && !planes.empty()) return planes;
         }
         return {};
     }
 
-    // Where planes cross each other, what lies between those of one direction is cut up along the others.
-    std::optional<double> width_between(const Place &place, std::size_t d, int strips) {
-        std::vector<Slab> planes = planes_across(place, d);
-        if (planes.empty() || planes.size() > most_open) return std::nullopt;
+    // What lies between thin slabs of one direction is cut up by `inner`; the slabs and all that is left in
+    // them together.
+    template <class Inner>
+    std::optional<double> width_between(const Place &place, std::vector<Slab> planes, Inner inner) {
+        const std::size_t d = planes[0].across;
         std::ranges::sort(planes, {}, &Slab::lo);
         double width = 0;
         Place rest = place;
@@ -249,14 +284,12 @@ struct Look {
             rest.ends[d][1] = place.ends[d][1];
             float next = place.ends[d][1]; // where the part behind the plane begins
             if (k < planes.size()) {
-                const float more = more_about(planes[k]);
-                planes[k].lo -= more, planes[k].hi += more;
                 rest.ends[d][1] = std::min(rest.ends[d][1], planes[k].lo);
                 next = planes[k].hi;
                 width += width_of(planes[k]);
             }
             if (rest.ends[d][0] < rest.ends[d][1]) {
-                const auto within = width_in(rest, strips - 1);
+                const auto within = inner(rest);
                 if (!within) return std::nullopt;
                 width += *within;
             }
@@ -266,12 +299,44 @@ struct Look {
         return width;
     }
 
+    // Where planes cross each other: those of one direction, as columns show them, then the others.
+    std::optional<double> width_crossed(const Place &place, std::size_t d, int strips) {
+        std::vector<Slab> planes = planes_across(place, d);
+        if (planes.empty() || planes.size() > most_open) return std::nullopt;
+        for (Slab &plane : planes) {
+            const float more = more_about(plane);
+            plane.lo -= more, plane.hi += more;
+        }
+        return width_between(place, planes,
+                             [&](const Place &rest) { return width_in(rest, strips - 1); });
+    }
+
+    // The same, of planes at right angles to an axis where they are guessed.
+    std::optional<double> width_by_guesses(const Place &place, int strips) {
+        for (std::size_t d = 0; d < 3 && strips > 0; ++d) {
+            std::vector<Slab> planes;
+            for (const float guess : sighting.planes[d]) {
+                const auto lo = static_cast<float>(guess - thin),
+                           hi = static_cast<float>(guess + thin);
+                if (lo > place.ends[d][0] && hi < place.ends[d][1]) planes.push_back({d, lo, hi});
+            }
+            if (planes.empty()) continue;
+            const auto inner = [&](const Place &rest) {
+                const auto width = width_in(rest, 0);
+                return width ? width : width_by_guesses(rest, strips - 1);
+            };
+            if (const auto width = width_between(place, planes, inner)) return width;
+        }
+        return std::nullopt;
+    }
+
     // Across each direction in turn; then where planes meet, so that one of them is stripped off first;
     // then where they cross.
     std::optional<double> width_in(const Place &place, int strips) {
         std::vector<std::vector<Slab>> open(directions.size());
         std::vector<Slab> slabs;
-        for (std::size_t d = 0; d < 3; ++d) cut_up({d, place.ends[d][0], place.ends[d][1]}, slabs);
+        for (std::size_t d = 0; d < 3; ++d)
+            for (const Slab &slab : parts_across(place, d)) slabs.push_back(slab);
         leave_open(place, slabs);
         for (const Slab &slab : slabs) open[slab.across].push_back(slab);
         for (std::size_t d = 0; d < directions.size(); ++d) {
@@ -300,7 +365,7 @@ struct Look {
             }
         for (const std::size_t d : order) {
             if (runs > most_runs) return std::nullopt;
-            if (const auto width = width_between(place, d, strips)) return width;
+            if (const auto width = width_crossed(place, d, strips)) return width;
         }
         return std::nullopt;
     }
@@ -381,21 +446,22 @@ void tie_alike(Across &across, const std::vector<Level> &levels, const Point &lo
 std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                             const Point &lo, const Point &hi, double thin, bool closely) {
     const Extent box{lo, hi};
-    const Seen seen = look_for_seams(evaluator, tape, {&box, 1}, thin)[0];
+    const Sighting seen = look_for_seams(evaluator, tape, {&box, 1}, thin)[0];
     return search_seam(evaluator, tape, boxes, box, seen, thin, closely).seam;
 }
 
 SeamSearch search_seam(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
-                       const Extent &box, Seen seen, double thin, bool closely) {
-    if (seen == Seen::NoSeam) return {};
+                       const Extent &box, const Sighting &sighting, double thin, bool closely) {
+    if (sighting.seen == Seen::NoSeam) return {};
     const auto &[lo, hi] = box;
-    Look look{evaluator, tape, boxes, seen == Seen::MaySolid, thin, {}, 0};
+    Look look{evaluator, tape, boxes, sighting.seen == Seen::MaySolid, thin, sighting};
     Place place;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         look.directions.push_back({axis, {{}, lo[axis], hi[axis], 1, 0, {}}});
         place.ends.push_back({lo[axis], hi[axis]});
     }
     std::optional<double> width = look.width_in(place, 0);
+    if (!width && closely) width = look.width_by_guesses(place, most_strips);
     if (!width) {
         std::array<std::vector<float>, 4> slopes;
         slopes_in(evaluator, tape, box, slopes);

@@ -32,6 +32,6 @@ struct SeamSearch {
 };
 // The same of a box of which it is known what samples say.
 SeamSearch search_seam(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
-                       const Extent &box, Seen seen, double thin, bool closely);
+                       const Extent &box, const Sighting &sighting, double thin, bool closely);
 
 } // namespace fathom::mesh

@@ -86,6 +86,10 @@ TEST_CASE("parts that are flush leave nothing undecided, however they lie") {
              {"(box([2, 1.6, 1.8]) - box([1, 0.7, 0.8])).rotate(0.7, axis: [3, -1, 1]) | "
               "box([1, 0.7, 0.8]).rotate(0.5, axis: [3, -1, 1]).rotate(0.2, axis: [3, -1, 1])",
               5.76, 1, 0},
+             {"box_frame(1, thickness: 0.16).repeat([1, 1, 1], count: [2, 2, 2])", 1.933312, 1, 28},
+             {"box_frame(1, thickness: 0.16).repeat([1, 1, 1], count: [2, 2, 2]).rotate(0.3, "
+              "axis: [1, 2, 3])",
+              1.933312, 1, 28},
          }) {
         INFO(text);
         const mesh::Mended made = mesh::make_certified_mesh(flush_scene(text), fine_cells(40));
@@ -168,6 +172,31 @@ TEST_CASE("planes that cross in an edge or a corner are found where it is looked
                             {-0.05f, -0.04f, -0.03f}, {0.07f, 0.06f, 0.05f}));
         CHECK_FALSE(seam_in("(" + cubes + " - box([0.001, 0.001, 3]))" + turn,
                             {-0.05f, -0.04f, -0.03f}, {0.07f, 0.06f, 0.05f}));
+    }
+}
+
+TEST_CASE("planes along the axes are guessed where they are, and take little work then") {
+    const mesh::Field field(
+        flush_scene("(box_frame(1, thickness: 0.16) | sphere(0.2).translate([0.42, 0.42, 0.42]))"
+                    ".repeat([1, 1, 1], count: [4, 4, 4])"),
+        0, {});
+    mesh::Evaluator evaluator(field);
+    cpu::Boxes boxes;
+    constexpr double thin = 4e-7;
+    constexpr std::size_t little = 20; // runs of the tape
+    for (const mesh::Point &lo :
+         {mesh::Point{1.0796f, 0.9991f, 0.9991f}, // two planes, and the ball
+          mesh::Point{0.96f, -0.06f, 0.3f},       // … along another axis
+          mesh::Point{0.97f, -0.03f, 0.96f}}) {   // three
+        mesh::Extent box{lo, lo};
+        for (float &x : box.hi) x += 0.0937f;
+        if (lo[0] > 1) box.hi = {lo[0] + 0.005f, lo[1] + 0.005f, lo[2] + 0.005f};
+        const auto sighting = mesh::look_for_seams(evaluator, *field.whole, {&box, 1}, thin)[0];
+        CHECK(sighting.seen == mesh::Seen::MaySolid);
+        const auto [seam, runs] =
+            mesh::search_seam(evaluator, *field.whole, boxes, box, sighting, thin, true);
+        CHECK((seam && seam->width < 1e-5));
+        CHECK(runs <= little);
     }
 }
 
