@@ -109,9 +109,9 @@ struct LeafLook {
         tape = shortened(evaluator, tape, 0);
     }
 
-    bool is_seam(const Box &box, const Sighting &seen) {
+    bool is_seam(const Box &box, const Sighting &seen, bool may_wait) {
         if (budget.divisions < seam_work) return false;
-        const bool closely = budget.close_runs > 0;
+        const bool closely = budget.close_runs > 0 && !may_wait;
         const auto [seam, runs] = search_seam(evaluator, *tape, boxes, {box.lo, box.hi}, seen,
                                               seam_thickness(inquiry.made.octree.lattice), closely);
         std::size_t &left = closely ? budget.close_runs : budget.divisions;
@@ -121,8 +121,9 @@ struct LeafLook {
     }
 
     // Takes boxes away that are seams, beginning with the one in the middle. `to_first`: it ends with the
-    // first that is none, which alone is left. `far_alone`: others than those are kept unasked.
-    void leave_out_seams(std::vector<Box> &left, bool to_first, bool far_alone) {
+    // first that is none, which alone is left. `first`: boxes that are not far are not looked into closely,
+    // `far_alone`: nor asked.
+    void leave_out_seams(std::vector<Box> &left, bool to_first, bool first, bool far_alone) {
         constexpr std::size_t at_once = 28; // as many as a run of the tape takes
         if (budget.divisions < seam_work) return;
         std::vector<Box> kept;
@@ -138,7 +139,7 @@ struct LeafLook {
             std::size_t next = 0;
             for (const Box &box : some) {
                 const bool asked = box.far || !far_alone;
-                if (asked && is_seam(box, seen[next++])) continue;
+                if (asked && is_seam(box, seen[next++], first && !box.far)) continue;
                 kept.push_back(box);
                 if (to_first) {
                     left = std::move(kept);
@@ -196,7 +197,8 @@ Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
         if (open.empty()) break;
         if (depth == 0) look.shorten_tape(whole);
         const bool last = depth == deepest || searched;
-        if (depth % seam_depth == 0) look.leave_out_seams(open, last, depth == 0 && node.crossed());
+        if (depth % seam_depth == 0)
+            look.leave_out_seams(open, last, depth == 0 && !last, depth == 0 && node.crossed());
         if (open.empty()) break;
         if (last || open.size() > budget.divisions) {
             reach.decided = false;

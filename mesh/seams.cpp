@@ -461,7 +461,7 @@ SeamSearch search_seam(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Bo
         place.ends.push_back({lo[axis], hi[axis]});
     }
     std::optional<double> width = look.width_in(place, 0);
-    if (!width && closely) width = look.width_by_guesses(place, most_strips);
+    if (!width) width = look.width_by_guesses(place, most_strips);
     if (!width) {
         std::array<std::vector<float>, 4> slopes;
         slopes_in(evaluator, tape, box, slopes);
