@@ -332,7 +332,8 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                                         "tube(Y, 0.1)`, "
                                       : "keep it out with a region behind it, as in "
                                         "`.within(ball(2) - tube(Y, 0.1))`, ") +
-                      "keep it off with `max(…, 0.001)`, " + assume);
+                      "keep it off with `max(…, 0.1)` (a smaller number makes it steeper), " +
+                      assume);
         return;
     }
 }

@@ -322,7 +322,7 @@ bool Prover::report_division(ShapeId id, const FieldBound &bound, const Blamed &
     Diagnostic *d =
         report_at(id, blamed, Code::FieldSingular, what + " is divided by what may be 0");
     if (!d) return true;
-    const std::string keep = "keep it off 0, as with `max(…, 0.001)`";
+    const std::string keep = "keep it off 0, as with `max(…, 0.1)`";
     if (reads.point) {
         d->note("that it is 0 nowhere is not seen, and the field is evaluated everywhere")
             .help(keep + ", or leave those points out, as in `.within(ball(2) - tube(Y, 0.1))`");
