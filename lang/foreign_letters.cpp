@@ -160,7 +160,8 @@ static bool is_invisible(std::uint32_t c) {
            (c >= 0x2060 && c <= 0x2064) || c == 0xFEFF || (c >= 0xE0000 && c <= 0xE007F);
 }
 
-// In comments and strings: what is read there should be what is shown.
+// In comments, which could hide what is read beside them. Names of files and of save files' nodes,
+// which stand in strings, may have such signs.
 void Lexer::turned_text(std::uint32_t begin, std::uint32_t end) {
     constexpr std::size_t most_edits = 40;
     if (!beyond_ascii_) return;

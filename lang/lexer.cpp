@@ -188,7 +188,6 @@ void Lexer::number(std::uint32_t begin, std::uint32_t end) {
 
 void Lexer::string(std::uint32_t begin, std::uint32_t end) {
     add(Tok::String, begin, end);
-    turned_text(begin, end);
     const std::string_view text = slice(begin, end);
     for (std::uint32_t i = 0; i < text.size();) {
         const CodePoint c = decode_utf8(text, i);

@@ -167,7 +167,9 @@ bool no_shape_before(Interpreter &ev, std::string_view name, const lang::Functio
     const lang::TypeExpr &type = *function.parameters[0].type;
     const bool takes_shape = type.kind == lang::TypeExpr::Kind::Name &&
                              (type.named == TypeName::Shape || type.named == TypeName::AnyShape);
-    const bool turns = name == "rotate" && args.size() == 2 && !args[1].name &&
+    const bool by_angle = function.parameters.size() > 1 && function.parameters[1].type &&
+                          function.parameters[1].type->name == "angle";
+    const bool turns = name == "rotate" && by_angle && args.size() == 2 && !args[1].name &&
                        args[0].value.kind == ValueKind::Shape &&
                        args[1].value.kind == ValueKind::Vec && args[1].value.size == 3;
     if (turns) {
