@@ -160,27 +160,35 @@
 //     edge = shadow*angle*s: what is farther changes nothing
 //     if s is a mark, d < edge and s <= quiet: closed(s).
 //       quiet = s - calm*(min(near, g) - edge): what is so much farther than the edge is not looked at
-//       again before that (where two parts are as near, the slope is small, and near too large). Where closed(s) < shadow: shadow = max(closed(s), darkest), at = s
+//       again before that (where two parts are as near, the slope is small, and near too large). Where closed(s) < shadow: shadow = max(closed(s), darkest)
 //     The ball of radius d about s is free; up to s - (d - edge), with the new
 //       edge, nothing in it is nearer than that. s = the greatest of s - d and the first mark that is
 //       before s, not above s - (d - edge) and not above quiet
-//   PENUMBRA, where shadow < closed_from: the least of closed between the marks beside `at`, by
-//   penumbra_turns golden sections with the slope of `at`; at the least, closed is taken anew, with
-//   the slope there, and counts where it is below that of the mark. So a penumbra depends on the solid
-//   alone: another bound makes other steps, but the same marks, and those that it passes over are not
-//   near enough.
+//   PENUMBRA, where 0 < shadow < closed_from at the end: closed(s) is as good as the field is near to a
+//   distance. So the way is gone anew, and of a mark where closed(s) < shadow the solid itself is looked
+//   for, and how far it is off the way in lights' sizes takes the place of closed(s):
+//     p = q + s*l. Down to the surface, at most descent_steps times, while |g| >= fine*slope, fine =
+//     max(h, penumbra_fine*angle*s): with v = gradient(p, max(fine, shadow_arm*|g|)) and the slope of
+//     TRUE DISTANCE, to p - g*v/(slope*|v|). There, x = (p - q).l, off = p - q - x*l; if margin < x <
+//     reach, |off|/(angle*x) counts where it is the least so far, and p is the best place.
+//     From the best place along the surface, n = v/|v|, to p + share*((off.n)*n - off), and down again,
+//     with a quarter of the share where that was not better (1 at first, least_share at least), at
+//     most most_slides times: until it was better by fine/4 at most, or the way has fine/2, or
+//     |off| - |off.n| is at most fine/4, which is as much as a plane would give; and not from where |v|
+//     is below `steady` times the slope, as on a film.
+//   So a penumbra depends on the solid alone, not on what the field is worth as a distance, and
+//   another bound makes other steps, but the same marks.
 //   FILMS: what covers a part of the light may be no solid: a film, where the field is 0 (TOUCHES), or
 //     a place where it is least and above 0, as between the face of a plate and the end of the tool that
 //     cuts it, if that ends a little beyond: there the field is a bound of the distance, and far below
-//     it. In a scene that may have some (`Frame::films`), where 0 < shadow < closed_from at the end:
-//     from p at `at`, at most film_steps times, while g >= near = film_near*slack(s)/4: with v =
+//     it. In a scene that may have some (`Frame::films`) the place p that would count is tried, and does
+//     not count if it is one: at most film_steps times, while g >= near = film_near*slack(s)/4: with v =
 //     gradient(p, a), a = shadow_arm*g, and the slope of TRUE DISTANCE, to p - g*v/(slope*|v|); where
 //     g does not become film_halved of what it was, to the lowest of that and the four taps; where that
 //     is not below film_lower of what it was, g is least there: a film. Where |g| < near, g is looked
 //     at film_looks times on a circle of radius film_look*slack(s)/4 about that place, across the way.
 //     If it is below -slack(s)/4 at none of them, that is a film (or an edge sharper than an angle
-//     between two looks). Then the way is gone anew, and where closed is less, at a mark and at the
-//     least between marks, this is tried: a film does not count.
+//     between two looks).
 //   shadow = min(shadow, 1), at least darkest; result: shadow^2*(3 - 2*shadow), less what it is at
 //   darkest and divided by 1 less that, so that what is nearly dark is dark, without a step
 //
@@ -217,7 +225,13 @@ inline constexpr float nearer = 0.9f;
 inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.075f; // of half the height that is seen at the focus
 inline constexpr float nearly = 0.98f;
-inline constexpr int penumbra_turns = 7;
+inline constexpr int descent_steps = 8; // to the surface
+inline constexpr int most_slides = 12;  // along it
+inline constexpr float steady =
+    0.5f; // of the slope: where a gradient is shorter it has no direction
+inline constexpr float least_share = 1.0f / 20;    // of a slide that is tried
+inline constexpr float penumbra_fine = 1.0f / 512; // of what the light covers: how near that is
+inline constexpr float nowhere = 1e9f;             // off the way, in lights' sizes
 inline constexpr float crease = 3;
 inline constexpr float calm = 0.125f;
 inline constexpr float dark = 1.0f / 64;     // of what the light covers at s

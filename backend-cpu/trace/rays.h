@@ -121,6 +121,22 @@ struct Approach {
 };
 std::vector<char> find_films(Worker &worker, const std::vector<Approach> &ways);
 
+// A way to a light, and a place on it that the solid may be near to.
+struct Sight {
+    Vec from, towards, at;
+    float reach, margin; // as of the ShadowRay
+    float angle;         // half the light's angular size
+    float fine;          // as near to the surface as it has to be
+};
+// What is found there of the surface: how far off the way, in lights' sizes, and the field's value
+// there (shading.h, PENUMBRA).
+struct Beside {
+    float off;
+    Vec at;
+    float g;
+};
+std::vector<Beside> find_beside(Worker &worker, const std::vector<Sight> &sights);
+
 // A hit's place: between the last two samples of its walk (shading.h, REFINED).
 struct Crossing {
     std::size_t ray;

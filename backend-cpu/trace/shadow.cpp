@@ -17,12 +17,11 @@ namespace {
 struct State {
     float s;                             // what is left of the way
     bool mark = false;                   // whether s is one of the marks
-    float shadow = shading::closed_from; // the least of `closed` at them so far, and
-    float at = 0, slope = 1;             // where, and the gradient's length there
+    float shadow = shading::closed_from; // the least of `closed` so far
     float quiet = 1e30f;                 // from where on it is looked at again
     int touches = 0;                     // as Walk::touches
     int probes = 0;                      // steps of the touch
-    bool careful = false;                // a film is on the way: each mark is tried for one
+    bool careful = false;                // what is found counts, not what the field says
 };
 
 class Shadows {
@@ -37,12 +36,11 @@ class Shadows {
         std::vector<std::size_t> all(rays_.size());
         std::iota(all.begin(), all.end(), std::size_t{0});
         march(all);
-        find_penumbrae(all);
-        if (worker_.stage.frame.films) {
-            begin_anew(all);
-            march(all);
-            find_penumbrae(all);
-        }
+        std::erase_if(all, [&](std::size_t i) {
+            return !(states_[i].shadow > 0 && states_[i].shadow < shading::closed_from);
+        });
+        for (std::size_t i : all) states_[i] = {.s = rays_[i].reach, .careful = true};
+        march(all);
         for (std::size_t i = 0; i < rays_.size(); ++i) {
             const float shadow = std::clamp(states_[i].shadow, shading::darkest, 1.0f);
             lit[i] = (shadow * shadow * (3.0f - 2.0f * shadow) - shading::dark_light) /
@@ -141,47 +139,48 @@ class Shadows {
         return gap * std::min(std::floor(to / gap), std::ceil(state.s / gap) - 1);
     }
 
-    // Keeps those that a film may have shaded, as they were at first, but for being careful.
-    void begin_anew(std::vector<std::size_t> &rays) {
-        std::erase_if(rays, [&](std::size_t i) {
-            return !(states_[i].shadow > 0 && states_[i].shadow < shading::closed_from);
-        });
-        close_.clear();
-        for (std::size_t i : rays) close_.push_back({i, states_[i].at, 0});
-        std::vector<Vec> points(rays.size());
-        for (std::size_t j = 0; j < rays.size(); ++j) points[j] = place(rays[j], close_[j].s);
-        std::vector<float> values;
-        evaluate_at(points, values);
-        for (std::size_t j = 0; j < rays.size(); ++j) close_[j].d = values[j];
-        measure();
-        find_films([](std::size_t) { return true; });
-        for (std::size_t j = 0; j < close_.size(); ++j)
-            if (on_film_[j])
-                states_[close_[j].ray] = {.s = rays_[close_[j].ray].reach, .careful = true};
-        std::erase_if(rays, [&](std::size_t i) { return !states_[i].careful; });
-    }
-
-    // Where something may cover the light, the true distance decides.
+    // Where something may cover the light, what is found there decides.
     void look() {
         if (close_.empty()) return;
         measure();
-        const auto closed_at = [&](std::size_t j) { return near_[j] / (angle_ * close_[j].s); };
-        find_films([&](std::size_t j) {
-            const State &state = states_[close_[j].ray];
-            return state.careful && closed_at(j) < state.shadow;
-        });
+        sights_.clear(), of_.clear();
         for (std::size_t j = 0; j < close_.size(); ++j) {
             const Close &close = close_[j];
             State &state = states_[close.ray];
-            const float closed = closed_at(j);
-            state.quiet = close.s - shading::calm * (std::min(near_[j], values_[j]) -
-                                                     state.shadow * angle_ * close.s);
-            if (closed < state.shadow && !on_film_[j]) {
-                state.shadow = std::max(closed, shading::darkest);
-                state.at = close.s;
-                state.slope = values_[j] > 0 ? values_[j] / near_[j] : 1.0f;
+            const ShadowRay &ray = rays_[close.ray];
+            const float light = angle_ * close.s;
+            state.quiet =
+                close.s - shading::calm * (std::min(near_[j], values_[j]) - state.shadow * light);
+            if (!(near_[j] < state.shadow * light)) continue;
+            if (!state.careful) {
+                state.shadow = std::max(near_[j] / light, shading::darkest);
+                continue;
             }
+            of_.push_back(j);
+            sights_.push_back({ray.from, ray.towards, points_[j], ray.reach, ray.margin, angle_,
+                               std::max(ray.arm, shading::penumbra_fine * light)});
         }
+        std::vector<Beside> beside = find_beside(worker_, sights_);
+        leave_out_films(beside);
+        for (std::size_t i = 0; i < of_.size(); ++i) {
+            float &shadow = states_[close_[of_[i]].ray].shadow;
+            shadow = std::min(shadow, std::max(beside[i].off, shading::darkest));
+        }
+    }
+    void leave_out_films(std::vector<Beside> &beside) {
+        if (!worker_.stage.frame.films) return;
+        std::vector<std::size_t> tried;
+        std::vector<Approach> ways;
+        for (std::size_t i = 0; i < of_.size(); ++i) {
+            const Close &close = close_[of_[i]];
+            if (!(beside[i].off < states_[close.ray].shadow)) continue;
+            tried.push_back(i);
+            ways.push_back({beside[i].at, beside[i].g, 0.25f * lengths_.slack_at(close.s),
+                            rays_[close.ray].towards});
+        }
+        const std::vector<char> films = find_films(worker_, ways);
+        for (std::size_t k = 0; k < tried.size(); ++k)
+            if (films[k]) beside[tried[k]].off = shading::nowhere;
     }
 
     // Of what is close: g in values_, the true distance in near_.
@@ -198,84 +197,10 @@ class Shadows {
             arms_[j] = std::max(arms_[j], shading::shadow_arm * values_[j]);
         near(worker_, points_.data(), values_.data(), arms_.data(), near_.data(), n);
     }
-    // Of these of what is close: whether it is a film (shading.h, FILMS).
-    template <class Which> void find_films(Which which) {
-        on_film_.assign(close_.size(), 0);
-        std::vector<std::size_t> tried;
-        std::vector<Approach> ways;
-        for (std::size_t j = 0; j < close_.size(); ++j) {
-            if (!which(j)) continue;
-            tried.push_back(j);
-            ways.push_back({points_[j], values_[j], 0.25f * lengths_.slack_at(close_[j].s),
-                            rays_[close_[j].ray].towards});
-        }
-        const std::vector<char> found = cpu::find_films(worker_, ways);
-        for (std::size_t i = 0; i < tried.size(); ++i) on_film_[tried[i]] = found[i];
-    }
-
     void evaluate_at(const std::vector<Vec> &points, std::vector<float> &out) {
         out.resize(points.size());
         for (std::size_t j = 0; j < points.size(); ++j) worker_.points.set(0, j, points[j]);
         shaded_values(worker_, worker_.points, out.data(), points.size());
-    }
-
-    void find_penumbrae(const std::vector<std::size_t> &rays) {
-        constexpr float golden = 0.618033989f;
-        struct Search {
-            std::size_t ray;
-            float lo, hi, a, b, at_a, at_b; // a < b, in between
-        };
-        std::vector<Search> searches;
-        for (std::size_t i : rays) {
-            const State &state = states_[i];
-            if (!(state.shadow > shading::darkest && state.shadow < shading::closed_from)) continue;
-            const float gap = spacing(state.at);
-            const float lo = std::max(state.at - gap, rays_[i].margin),
-                        hi = std::min(state.at + gap, rays_[i].reach);
-            const float part = golden * (hi - lo);
-            searches.push_back({i, lo, hi, hi - part, lo + part, 0, 0});
-        }
-        if (searches.empty()) return;
-        std::vector<Vec> points(searches.size());
-        std::vector<float> values;
-        const auto closed = [&](auto where, auto result) {
-            for (std::size_t j = 0; j < searches.size(); ++j)
-                points[j] = place(searches[j].ray, where(searches[j]));
-            evaluate_at(points, values);
-            for (std::size_t j = 0; j < searches.size(); ++j) {
-                Search &search = searches[j];
-                result(search, values[j] / (states_[search.ray].slope * angle_ * where(search)));
-            }
-        };
-        closed([](const Search &x) { return x.a; }, [](Search &x, float c) { x.at_a = c; });
-        closed([](const Search &x) { return x.b; }, [](Search &x, float c) { x.at_b = c; });
-        for (int turn = 0; turn < shading::penumbra_turns; ++turn) {
-            std::vector<char> left(searches.size());
-            for (std::size_t j = 0; j < searches.size(); ++j) {
-                Search &x = searches[j];
-                left[j] = x.at_a < x.at_b;
-                if (left[j]) {
-                    x.hi = x.b, x.b = x.a, x.at_b = x.at_a;
-                    x.a = x.hi - golden * (x.hi - x.lo);
-                } else {
-                    x.lo = x.a, x.a = x.b, x.at_a = x.at_b;
-                    x.b = x.lo + golden * (x.hi - x.lo);
-                }
-            }
-            const auto made = [&](const Search &x) {
-                return left[static_cast<std::size_t>(&x - searches.data())] ? x.a : x.b;
-            };
-            closed(made, [&](Search &x, float c) {
-                (left[static_cast<std::size_t>(&x - searches.data())] ? x.at_a : x.at_b) = c;
-            });
-        }
-        close_.clear();
-        for (const Search &x : searches) close_.push_back({x.ray, x.at_a < x.at_b ? x.a : x.b, 0});
-        for (std::size_t j = 0; j < close_.size(); ++j)
-            points[j] = place(close_[j].ray, close_[j].s);
-        evaluate_at(points, values);
-        for (std::size_t j = 0; j < close_.size(); ++j) close_[j].d = values[j];
-        look();
     }
 
     struct Close {
@@ -291,7 +216,8 @@ class Shadows {
     std::vector<Close> close_;
     std::vector<Vec> points_;
     std::vector<float> next_, arms_, values_, near_;
-    std::vector<char> on_film_; // as close_
+    std::vector<Sight> sights_;
+    std::vector<std::size_t> of_; // which of what is close each is
 };
 
 } // namespace

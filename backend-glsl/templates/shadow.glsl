@@ -84,20 +84,81 @@ $end
 }
 
 $end
+// How far what is found of the surface below p is off the way from q along l, in lights' sizes (PENUMBRA); p becomes
+// its place.
+float fathom_beside(vec3 q, vec3 l, inout vec3 p, float reach, float angle, float margin, float fine) {
+    vec3 v = vec3(0.0), around = vec3(0.0), best = p, along = vec3(0.0);
+    float least = $UNSEEN, share = 1.0, g = 0.0, slope = 0.0, arm = 0.0, bent = 0.0;
+    int steps = 0, slides = 0, tap = -1; // of a gradient, -1: the field itself
+    for (int i = $ZERO; i < ($MOST_SLIDES + 1) * (5 * $DESCENT_STEPS + 1); ++i) {
+$if AROUND
+        fathom_exact = true;
+$end
+        float f = $SHADED(p + around);
+$if AROUND
+        fathom_exact = false;
+$end
+$if CACHED
+        if (fathom_absent) return $UNSEEN;
+$end
+        if (tap >= 0) {
+            v += f * fathom_corner(tap);
+            bent += f;
+            ++tap;
+            around = arm * fathom_corner(tap & 3);
+            if (tap == 4) {
+                v *= 0.75 / arm;
+                bent *= 0.25 / arm;
+                slope = max(sqrt(dot(v, v) + $CREASE * bent * bent), $MIN_SLOPE);
+                p -= g / (slope * max(length(v), $MIN_SLOPE)) * v;
+                ++steps;
+                around = vec3(0.0);
+                tap = -1;
+            }
+            continue;
+        }
+        g = f;
+        bool landed = abs(g) < fine * slope;
+        if (landed || steps == $DESCENT_STEPS) {
+            float x = dot(p - q, l);
+            vec3 off = p - q - x * l;
+            float offset = landed && x > margin && x < reach ? length(off) / (angle * x) : $UNSEEN;
+            bool nearer = offset < least;
+            if (nearer) {
+                float gain = (least - offset) * angle * x;
+                least = offset;
+                best = p;
+                vec3 n = v / max(length(v), $MIN_SLOPE);
+                along = dot(off, n) * n - off;
+                if (length(v) < $STEADY * slope) break;
+                if (!(min(gain, length(off) - abs(dot(off, n))) > 0.25 * fine)) break;
+            }
+            if (!nearer) share *= 0.25;
+            if (slides == $MOST_SLIDES || share < $LEAST_SHARE || !(share * length(along) > 0.5 * fine)) break;
+            p = best + share * along;
+            steps = 0;
+            ++slides;
+            continue;
+        }
+        tap = 0;
+        arm = max(fine, $SHADOW_ARM * abs(g));
+        v = vec3(0.0);
+        bent = -4.0 * g;
+        around = arm * fathom_corner(0);
+    }
+    p = best;
+    return least;
+}
+
 // How much of a light arrives: marched from the light towards the point (thesis, 4.2.1).
 float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, float h) {
     float s = reach; // what is left of the way
     bool mark = false; // whether s is one of the marks
-    float shadow = $CLOSED_FROM, at = 0.0; // the least of `closed` at them so far, and where
+    float shadow = $CLOSED_FROM; // the least of `closed` so far
     float quiet = 1e30; // from where on marks are looked at again
     int touches = 0; // 1, and how many samples in a row of a touch were not above 0; 0: none
     int probes = 0;   // steps of the touch
-$if FILMS
-    bool careful = false; // a film is on the way: each mark is tried for one
-    bool done = false; // the least is known: what is nearest there is tried for a film
-$else
-    const bool done = false;
-$end
+    bool careful = false; // what is found counts, not what the field says
     int turn = $ZERO;
 $if PASSES
     int taken = 0;
@@ -110,14 +171,10 @@ $if PASSES
             touches = int(-kept.z) - 8 * probes;
         }
         shadow = kept.w;
-        kept = fathom_kept(fathom_kept_1);
-        at = kept.x;
-        quiet = kept.y;
+        quiet = fathom_kept(fathom_kept_1).y;
         taken = int(fathom_kept(fathom_kept_3).y);
-$if FILMS
         careful = taken < 0;
         if (careful) taken = -1 - taken;
-$end
         fathom_light_kept = -1;
     }
     int limit = min(fathom_turns - fathom_taken, fathom_budget - taken);
@@ -126,16 +183,13 @@ $else
 $end
     float x = s, value = 0.0, next = 0.0;
     int tap = -1;    // of the gradient at x; 0: the field itself, -1: none
-    int search = -1; // evaluations for the penumbra; -1: the way is not done yet
-    float lo = 0.0, hi = 0.0, a = 0.0, b = 0.0, at_a = 0.0, at_b = 0.0;
-    bool left = true;
     vec3 sum = vec3(0.0);
 $if !UNIT_SLOPE
     float arm = h, bent = 0.0; // how far the taps are above the value, all together
 $end
     while (true) {
         float f = 0.0;
-        bool ahead = tap < 0 && search < 0;
+        bool ahead = tap < 0;
 $if SHADED_APART
         while (ahead && turn < limit && s > margin) {
 $else
@@ -210,64 +264,20 @@ $if PASSES
             if (s > margin && taken + turn < fathom_budget) {
                 fathom_goes_on = true;
                 fathom_keep_0 = vec4(0.0, s, touches > 0 ? float(-touches - 8 * probes) : float(mark), shadow);
-                fathom_keep_1 = vec4(at, quiet, 0.0, 0.0);
-$if FILMS
+                fathom_keep_1 = vec4(0.0, quiet, 0.0, 0.0);
                 fathom_keep_3.y = float(careful ? -1 - taken - turn : taken + turn);
-$else
-                fathom_keep_3.y = float(taken + turn);
-$end
                 return 1.0;
             }
 $end
             if (s > margin) fathom_shadow_undecided = true;
-$if FILMS
-            if (!(shadow < $CLOSED_FROM) || (careful && !(shadow > $DARKEST))) break;
-            done = !(shadow > $DARKEST);
-            if (!done) {
-$else
-            if (!(shadow > $DARKEST && shadow < $CLOSED_FROM)) break;
-            {
-$end
-                search = 0;
-                left = true;
-                float gap = fathom_power($MARKS * angle * at);
-                lo = max(at - gap, margin);
-                hi = min(at + gap, reach);
-                a = hi - $GOLDEN * (hi - lo);
-                b = lo + $GOLDEN * (hi - lo);
-                x = a;
-                continue;
-            }
-        }
-        if (tap < 0 && !done) { // golden sections
-            if (left) at_a = f;
-            if (!left) at_b = f;
-            ++search;
-            if (search == 1) {
-                left = false;
-                x = b;
-                continue;
-            }
-            left = at_a * b < at_b * a;
-            if (search < $SEARCHES) {
-                if (left) {
-                    hi = b;
-                    b = a;
-                    at_b = at_a;
-                    a = hi - $GOLDEN * (hi - lo);
-                }
-                if (!left) {
-                    lo = a;
-                    a = b;
-                    at_a = at_b;
-                    b = lo + $GOLDEN * (hi - lo);
-                }
-                x = mix(b, a, left);
-                continue;
-            }
-            x = mix(b, a, left);
-            f = mix(at_b, at_a, left);
-            tap = 0;
+            if (careful || s > margin || !(shadow < $CLOSED_FROM)) break;
+            careful = true;
+            s = reach;
+            mark = false;
+            shadow = $CLOSED_FROM;
+            quiet = 1e30;
+            touches = 0;
+            continue;
         }
         if (tap == 0) value = f;
 $if UNIT_SLOPE
@@ -282,61 +292,24 @@ $else
             sum += f * fathom_corner(tap - 1);
             bent += f;
         }
-        if (tap < 4 && !done) {
+        if (tap < 4) {
             ++tap;
             continue;
         }
         float near = value / max(sqrt(0.5625 * dot(sum, sum) + $CREASE * 0.0625 * bent * bent) / arm, $MIN_SLOPE);
 $end
+        quiet = x - $CALM * (min(near, value) - shadow * angle * x);
+        if (near < shadow * angle * x) {
+            vec3 p = q + x * l;
+            float off = near / (angle * x);
+            if (careful) off = fathom_beside(q, l, p, reach, angle, margin, max(h, $FINE * angle * x));
 $if FILMS
-        float closed = near / (angle * x);
-        bool lowers = closed < shadow;
-        if (search >= 0 && !careful) {
-            done = true;
-            if (lowers) {
-                shadow = max(closed, $DARKEST);
-                at = x;
-            }
-        }
-        if (done || careful && lowers) {
-            float way = done ? at : x;
-            bool film = fathom_film(q + way * l, l, 0.25 * fathom_slack_at(way));
+            if (careful && off < shadow && fathom_film(p, l, 0.25 * fathom_slack_at(x))) off = $UNSEEN;
+$end
 $if CACHED
             if (fathom_absent) return 1.0;
 $end
-            if (done) {
-                if (!film) break;
-                careful = true; // all of the way anew
-                done = false;
-                s = reach;
-                mark = false;
-                shadow = $CLOSED_FROM;
-                at = 0.0;
-                quiet = 1e30;
-                touches = 0;
-                tap = -1;
-                search = -1;
-                continue;
-            }
-            lowers = !film;
-        }
-        if (search >= 0) {
-            if (lowers) shadow = closed;
-            break;
-        }
-        quiet = x - $CALM * (min(near, value) - shadow * angle * x);
-        if (lowers) {
-$else
-        float closed = near / (angle * x);
-        if (search >= 0) {
-            shadow = min(shadow, closed);
-            break;
-        }
-        quiet = x - $CALM * (min(near, value) - shadow * angle * x);
-        if (closed < shadow) {
-$end
-            shadow = max(closed, $DARKEST);
-            at = x;
+            shadow = min(shadow, max(off, $DARKEST));
         }
         tap = -1;
         float to = fathom_mark(s, next, shadow * angle * s, quiet, angle);

@@ -266,7 +266,7 @@ TEST_CASE("the soft shadow on a soft star has no grain") {
 TEST_CASE("two texts of one solid give one picture") {
     const std::string scene = camera + "lighting(ambient_occlusion: 1, soft_shadows: 0.1)\n"
                                        "sun(direction: [0.6, 0.8, 0.3])\nplane(Y, -1)\n";
-    // A field that is no distance, or not known to be one, differs a little at edges and creases.
+    // What a field of its own finds at edges differs a little.
     struct Pair {
         const char *one, *other;
         int differ = few;
@@ -274,16 +274,24 @@ TEST_CASE("two texts of one solid give one picture") {
     const Pair pairs[] = {
         {"box(2)",
          "plane(X, 1) & plane(-X, 1) & plane(Y, 1) & plane(-Y, 1) & plane(Z, 1) & plane(-Z, 1)",
-         8 * few},
+         few},
         {"sphere(1)", "implicit(p => length(p) - 1, within: ball(1.05))"},
+        {"ellipsoid([1.2, 0.6, 0.5])",
+         "implicit(p => 0.2 * (dot(p / [1.2, 0.6, 0.5], p / [1.2, 0.6, 0.5]) - 1), "
+         "within: aabb([-1.2, -0.6, -0.5], [1.2, 0.6, 0.5]))"},
+        {"box([0.6, 0.3, 0.6]).rotate(40deg)",
+         "box([0.6, 1, 0.6]).scale([1, 0.3, 1]).rotate(40deg)"},
+        {"cylinder(0.6, 0.18).rotate(30deg, axis: Z)",
+         "cylinder(0.6, 0.6).scale([1, 0.3, 1]).rotate(30deg, axis: Z)"},
+        {"box(1.2)",
+         "implicit(p => max(abs(p.x), max(abs(p.y), abs(p.z))) - 0.6, within: everywhere)"},
         {"sphere(1)", "implicit(p => length(p) - 1, within: ball(3))"},
-        {"sphere(1)", "implicit(p => 7 * (length(p) - 1), within: ball(2))", 8 * few},
-        {"sphere(1)", "implicit(p => dot(p, p) - 1, within: ball(2))", 3 * few},
+        {"sphere(1)", "implicit(p => 7 * (length(p) - 1), within: ball(2))", 5 * few},
+        {"sphere(1)", "implicit(p => dot(p, p) - 1, within: ball(2))", 2 * few},
         {"sphere(1)", "sphere(0.5).scale(2)"},
         {"torus(1, 0.3)", "implicit(p => length([length(p.xz) - 1, p.y]) - 0.3, within: ball(3))"},
         {"box(1.5) | sphere(1)", "sphere(1) | (box(1.5) & box(9))"},
-        {"box(2) - sphere(1.2)", "box(2) & implicit(p => 1.2 - length(p), within: everywhere)",
-         9 * few},
+        {"box(2) - sphere(1.2)", "box(2) & implicit(p => 1.2 - length(p), within: everywhere)"},
         {"cylinder(1, 1.5)", "circle(1).extrude(1.5).rotate(90deg, axis: X)"},
     };
     for (const auto &[one, other, differ] : pairs) {

@@ -26,6 +26,18 @@ const std::vector<std::string> flags{
     "FILMS"};
 
 // What a flag decides beside its own `$if`, as the emitter has it.
+void add_counts(Values &values) {
+    for (const char *count :
+         {"LIGHTS",     "MAX_STEPS",     "ALL_TAPS",    "REFINEMENTS", "DEEP",      "NEARING",
+          "MANY_STEPS", "DESCENT_STEPS", "MOST_SLIDES", "CHECK_STEPS", "AGES",      "ROWS",
+          "COUNT",      "WISHES",        "SAMPLED",     "HIGHEST",     "HIGH_BITS", "HIGH_MASK",
+          "PLACE_BITS", "FILM_STEPS",    "FILM_LOOKS",  "HEAD",        "TAIL",      "LIMIT",
+          "INSERTED",   "EVICTED",       "DELETED",     "CROWDED",     "FULL",      "SWEPT",
+          "CHANGED",    "PAID",          "WASTED",      "LEFT",        "STEPS",     "MANY",
+          "REFUSED",    "STRIDE",        "LAST"})
+        values.emplace(count, "2");
+}
+
 Values values_with(std::string_view name, const std::set<std::string> &on) {
     const auto is = [&](const char *flag) { return on.contains(flag); };
     Values values{
@@ -114,7 +126,10 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "MARKS",
                                "SHADOW_ARM",
                                "NEARLY",
-                               "GOLDEN",
+                               "FINE",
+                               "LEAST_SHARE",
+                               "STEADY",
+                               "UNSEEN",
                                "OCCLUSION_TOTAL",
                                "OCCLUSION_SAMPLES",
                                "OCCLUSION_REACH",
@@ -132,15 +147,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "ABOVE",
                                "CELL"})
         values.emplace(number, "0.5");
-    for (const char *count :
-         {"LIGHTS",     "MAX_STEPS",  "ALL_TAPS",    "REFINEMENTS", "DEEP",      "NEARING",
-          "MANY_STEPS", "SEARCHES",   "CHECK_STEPS", "AGES",        "ROWS",      "COUNT",
-          "WISHES",     "SAMPLED",    "HIGHEST",     "HIGH_BITS",   "HIGH_MASK", "PLACE_BITS",
-          "FILM_STEPS", "FILM_LOOKS", "HEAD",        "TAIL",        "LIMIT",     "INSERTED",
-          "EVICTED",    "DELETED",    "CROWDED",     "FULL",        "SWEPT",     "CHANGED",
-          "PAID",       "WASTED",     "LEFT",        "STEPS",       "MANY",      "REFUSED",
-          "STRIDE",     "LAST"})
-        values.emplace(count, "2");
+    add_counts(values);
     for (const char *word : {"EMPTY", "NOWHERE", "PLACES"}) values.emplace(word, "7u");
     for (const std::string &flag : flags) values.emplace(flag, is(flag.c_str()) ? "1" : "");
     return values;
