@@ -226,7 +226,7 @@ inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.075f; // of half the height that is seen at the focus
 inline constexpr float nearly = 0.98f;
 inline constexpr int descent_steps = 8; // to the surface
-inline constexpr int most_slides = 12;  // along it
+inline constexpr int most_slides = 6;   // along it
 inline constexpr float steady =
     0.5f; // of the slope: where a gradient is shorter it has no direction
 inline constexpr float least_share = 1.0f / 20;    // of a slide that is tried

@@ -347,8 +347,8 @@ class Forms : WordChanges {
         }
         const bool braces =
             item > 0 && name > 0 && is_one_of(kind(past), {Tok::Body, Tok::Trailing});
-        if (name == 0 || kind(name) != Tok::Name || words_[past].first_on_line ||
-            (kind(past) != Tok::Assign && !braces))
+        if (name == 0 || kind(name) != Tok::Name || (kind(past) != Tok::Assign && !braces) ||
+            words_[past].first_on_line)
             return false;
         const std::string let = "let " + std::string(text(name));
         const std::size_t close = braces ? close_of(past, longest_list) : 0;

@@ -85,12 +85,14 @@ $end
 
 $end
 // How far what is found of the surface below p is off the way from q along l, in lights' sizes (PENUMBRA); p becomes
-// its place.
-float fathom_beside(vec3 q, vec3 l, inout vec3 p, float reach, float angle, float margin, float fine) {
+// its place, and the evaluations are added to `looks`.
+float fathom_beside(vec3 q, vec3 l, inout vec3 p, float reach, float angle, float margin, float fine,
+                    inout int looks) {
     vec3 v = vec3(0.0), around = vec3(0.0), best = p, along = vec3(0.0);
     float least = $UNSEEN, share = 1.0, g = 0.0, slope = 0.0, arm = 0.0, bent = 0.0;
     int steps = 0, slides = 0, tap = -1; // of a gradient, -1: the field itself
     for (int i = $ZERO; i < ($MOST_SLIDES + 1) * (5 * $DESCENT_STEPS + 1); ++i) {
+        ++looks;
 $if AROUND
         fathom_exact = true;
 $end
@@ -302,7 +304,14 @@ $end
         if (near < shadow * angle * x) {
             vec3 p = q + x * l;
             float off = near / (angle * x);
-            if (careful) off = fathom_beside(q, l, p, reach, angle, margin, max(h, $FINE * angle * x));
+            if (careful) {
+                int looks = 0;
+                off = fathom_beside(q, l, p, reach, angle, margin, max(h, $FINE * angle * x), looks);
+$if PASSES
+                limit -= looks;
+                fathom_taken += looks;
+$end
+            }
 $if FILMS
             if (careful && off < shadow && fathom_film(p, l, 0.25 * fathom_slack_at(x))) off = $UNSEEN;
 $end
