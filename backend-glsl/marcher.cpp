@@ -26,10 +26,13 @@ Values values_of(const MarcherOptions &options) {
     namespace shading = ir::shading;
     const std::string far = "100.0 * max(" + float_literal(options.radius) +
                             ", length(fathom_origin - " + options.center + "))";
-    const bool closest = !options.unit_slope || options.films;
+    const bool many_slopes = !options.unit_slope && !options.skip_shading;
+    const int surface_taps = many_slopes ? 5 : 4;
     return {
         {"BOXED", flag(options.boxed)},
         {"UNIT_SLOPE", flag(options.unit_slope)},
+        {"EXACT", flag(options.exact)},
+        {"MANY_SLOPES", flag(many_slopes)},
         {"SHADED_APART", flag(options.shaded_apart)},
         {"ESTIMATED", flag(options.estimate > 0)},
         {"SHADED", options.shaded_apart ? "fathom_shaded" : "sdf"},
@@ -37,7 +40,7 @@ Values values_of(const MarcherOptions &options) {
         {"FOUR_OUTPUTS", flag(options.four_outputs)},
         {"HAS_SAFE_RADIUS", flag(options.has_safe_radius)},
         // Of a field that costs little, two copies are quicker than the loop round one.
-        {"TWICE", flag(options.cheap && !options.cached)},
+        {"APART", flag(options.skip_shading || (options.cheap && !options.cached))},
         {"SKIP_SHADING", flag(options.skip_shading)},
         {"CLASSIC", flag(options.classic)},
         {"SOFT", flag(!options.classic && !options.skip_shading)},
@@ -90,23 +93,23 @@ Values values_of(const MarcherOptions &options) {
         {"FILM_LOOKS", fmt::to_string(shading::film_looks)},
         {"FILM_NEAR", float_literal(shading::film_near)},
         {"FILM_LOOK", float_literal(shading::film_look)},
-        {"FILM_HALVED", float_literal(shading::film_halved)},
         {"FILM_LOWER", float_literal(shading::film_lower)},
-        {"FILM_APART", float_literal(shading::film_apart)},
+        {"FILM_FLAT", float_literal(shading::film_flat)},
         {"FILM_TURN", float_literal(shading::film_turn)},
         {"DARKEST", float_literal(shading::darkest)},
         {"NO_ESTIMATE", options.estimate > 0 ? " && d > 0.0" : ""},
         {"MANY_STEPS", fmt::to_string(shading::many_steps)},
         {"NEARLY", float_literal(shading::nearly)},
-        {"FLAT", options.shaded_apart ? "false" : "least >= " + float_literal(shading::nearly)},
+        {"OCCLUSION_FINE", float_literal(shading::occlusion_fine)},
         {"DESCENT_STEPS", fmt::to_string(shading::descent_steps)},
+        {"DESCENT_APART", float_literal(shading::descent_apart)},
         {"MOST_SLIDES", fmt::to_string(shading::most_slides)},
         {"STEADY", float_literal(shading::steady)},
         {"LEAST_SHARE", float_literal(shading::least_share)},
         {"FINE", float_literal(shading::penumbra_fine)},
         {"UNSEEN", float_literal(shading::nowhere)},
-        {"CLOSEST", flag(closest)},
-        {"ALL_TAPS", fmt::to_string(4 + shading::occlusion_samples + (closest ? 4 : 0))},
+        {"SURFACE_TAPS", fmt::to_string(surface_taps)},
+        {"ALL_TAPS", fmt::to_string(surface_taps + shading::occlusion_samples)},
         {"OCCLUSION_TOTAL", float_literal(1 - std::ldexp(1.0, -shading::occlusion_samples))},
         {"OCCLUSION_REACH", float_literal(shading::occlusion_reach)},
         {"OCCLUSION_SAMPLES", float_literal(float{shading::occlusion_samples})},
@@ -132,8 +135,8 @@ int steps_in_one_pass(double bound, double lengths) {
 std::string marcher_text(const MarcherOptions &options) {
     const Values values = values_of(options);
     return (options.pick ? "\nlayout(location = 1) out vec4 fathom_pick;\n" : "") +
-           expand("march", values) + expand("corner", values) + expand("shadow", values) +
-           expand("shade", values) + expand("picture", values);
+           expand("march", values) + expand("corner", values) + expand("nearest", values) +
+           expand("shadow", values) + expand("shade", values) + expand("picture", values);
 }
 
 std::string probe_text(MarcherOptions options) {

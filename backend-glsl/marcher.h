@@ -32,6 +32,7 @@ namespace fathom::glsl {
 struct MarcherOptions {
     bool boxed = false;           // rays live between FATHOM_LO and FATHOM_HI
     bool unit_slope = false;      // Scene::unit_slope
+    bool exact = false;           // Scene::exact
     bool films = false;           // Scene::films
     bool shaded_apart = false;    // Scene::shaded is not the distance
     bool has_safe_radius = false; // the field says how far it has_safe_radius

@@ -89,6 +89,7 @@ MarcherOptions marcher_options(const Module &module, const SceneText &text, cons
     MarcherOptions marcher;
     marcher.boxed = frame.boxed;
     marcher.unit_slope = frame.unit_slope;
+    marcher.exact = frame.exact;
     marcher.films = frame.films;
     marcher.estimate = frame.estimate;
     marcher.shaded_apart = is_shaded_apart(scene);

@@ -47,6 +47,7 @@ struct PartialSum {
 // What the analysis proved of one shape, in the shape's own space.
 struct ShapeFact {
     FieldKind kind = FieldKind::Bound;
+    bool exact_outside = false; // the distance, outside the solid
     ProofStatus status = ProofStatus::Proved;
     NodeId lipschitz; // of the raw field: a float expression in params and time alone; >= the true
                       // constant
@@ -227,6 +228,7 @@ struct Scene {
         shaded; // (vec3) -> float: the same surface and signs; no bound above 1 divides it, so
                 // it is no safe step. `distance` itself where no bound is above 1
     bool unit_slope = false; // the slope of `shaded` is 1 almost everywhere
+    bool exact = false;      // `shaded` is the distance, outside the solid
     bool films = false; // the field may be 0, or nearly, where there is no solid (shading.h, FILMS)
     FunctionId hit;     // (vec3) -> Hit: the same distance, with the surface that decides
     FunctionId endless, endless_hit; // the same of the parts without an end alone, where the scene

@@ -124,22 +124,42 @@
 //   of a light arrives is for `seen` to say, which never makes a contact black (thesis, 4.2.1 has
 //   both).
 //
+// NEAREST: how far off a point c, or the way from q along l to a light, the solid is. The field may
+//   say less than the distance, so the solid's surface is gone down to and followed, from a place p
+//   on where the field says g; `fine` is as near to the surface as p has to come.
+//   off(p) = p - c for a point; for a way p - q - x*l with x = (p - q).l, which counts where x is
+//   on the way; it is measured in lights' sizes there, angle*x.
+//   DOWN to the surface, at most descent_steps times, while |g| >= fine*slope: with v = gradient(p,
+//   max(fine, shadow_arm*|g|)) and the slope of TRUE DISTANCE, by d = -g*v/(slope*|v|). Where that
+//   step leads to where the field is above 0 by the gradient u of the step before, the field is the
+//   greater of two: the shortest d by which both are 0, if the sine between them is at least
+//   sqrt(descent_apart). So the sharp edge of a cut is reached in a few steps. What is not reached
+//   is nowhere.
+//   ALONG the surface, n = v/|v|, from the best place so far, to p + share*((off.n)*n - off), and
+//   down again, with a quarter of the share where that was not better (1 at first, least_share at
+//   least), at most most_slides times: until it was better by `fine` at most, or the way has
+//   fine/2, or |off| - |off.n| is at most `fine`, which is as much as a plane would give; and not
+//   from where |v| is below `steady` times the slope, as on a film.
+//   FILMS: what is found may be no solid: a film, where the field is 0 (TOUCHES), or a place where
+//     it is least and above 0, as between the face of a plate and the end of the tool that cuts it,
+//     if that ends a little beyond. In a scene that may have some (`Frame::films`) the place that
+//     counts is tried, and is nowhere if it is one: the way goes on down, at most film_steps times,
+//     while g >= near = film_near*thick, thick = slack/4 there; where g does not become less than
+//     film_lower of what it was, it is least there: a film. Where |g| < near, g is looked at
+//     film_looks times on a circle of radius film_look*thick about that place, in the plane of off
+//     and v, which an edge is across (where both are one way, in some plane that holds it). If it
+//     is below -thick at none of them, that is a film (or an edge sharper than an angle between two
+//     looks).
+//
 // OCCLUSION (thesis, 4.2.1: five samples along the normal)
-//   for i = 1..5, x_i = reach*i/5 (Lighting's, else Frame's), g_i = g(p + x_i*n); k is the i with the least
-//   g_i/x_i, the first of equals. slope = 1 where `Frame::unit_slope`, or where no bound is above 1
-//   (so that no slope is) and g_k >= nearly*x_k; else max(|gradient(p + x_k*n, h)|, min(slope at
-//   p, 1), min_slope): where the samples of a gradient lie across a crease, it is too small.
-//   slope_i = slope; but where own_i, the greatest of slope at p, min_slope and g_j/x_j up to j = i, is
-//   below it (not where `Frame::unit_slope`): slope + (own_i - slope)*clamp(g_i/(own_i*x_i), 0, 1). So
-//   what rises as the surface itself does is open, and what closes begins to without an edge, however
-//   steep its field is.
-//   closed_i = clamp(1 - g_i/(slope_i*x_i), 0, 1)
-//   In a scene that may have films (`Frame::films`), where what is nearest to the sample k is one, it
-//   closes nothing. With v = gradient(p + x_k*n, h), m = p + x_k*n - g_k*v/(slope*|v|) is tried (FILMS),
-//   with a circle whose plane holds v. Of a film the distance by its slope from the sample i is b_i =
-//   |(p + x_i*n - m).v|, and closed_i is multiplied by clamp(film_apart*(1 - g_i/b_i), 0, 1): what is
-//   nearer than the film still closes.
-//   occlusion = sum of 2^-i * closed_i, divided by the sum of the 2^-i
+//   for i = 1..5, x_i = reach*i/5 (Lighting's, else Frame's), c_i = p + x_i*n, g_i = g(c_i), w_i =
+//   2^-i
+//   closed_i = clamp(1 - d_i/x_i, 0, 1), where d_i is how far off the solid is: g_i itself where
+//   the field is the distance (`Frame::exact`) or below 0. Else x_i, if g_i >= nearly*own_i*x_i,
+//   own_i the greatest of the slope at p and g_j/x_j up to j = i (1 with `Frame::unit_slope`): what
+//   rises as the surface itself does is open, however steep its field is. Else what is NEAREST to
+//   c_i from there on, with fine = max(h, occlusion_fine*x_i/w_i) and the slack at t.
+//   occlusion = sum of w_i*closed_i, divided by the sum of the w_i
 //
 // SHADOW (thesis, 4.2.1: from the light towards the point, so that no ray has to leave a surface
 // slowly)
@@ -164,31 +184,12 @@
 //     The ball of radius d about s is free; up to s - (d - edge), with the new
 //       edge, nothing in it is nearer than that. s = the greatest of s - d and the first mark that is
 //       before s, not above s - (d - edge) and not above quiet
-//   PENUMBRA, where 0 < shadow < closed_from at the end: closed(s) is as good as the field is near to a
-//   distance. So the way is gone anew, and of a mark where closed(s) < shadow the solid itself is looked
-//   for, and how far it is off the way in lights' sizes takes the place of closed(s):
-//     p = q + s*l. Down to the surface, at most descent_steps times, while |g| >= fine*slope, fine =
-//     max(h, penumbra_fine*angle*s): with v = gradient(p, max(fine, shadow_arm*|g|)) and the slope of
-//     TRUE DISTANCE, to p - g*v/(slope*|v|). There, x = (p - q).l, off = p - q - x*l; if margin < x <
-//     reach, |off|/(angle*x) counts where it is the least so far, and p is the best place.
-//     From the best place along the surface, n = v/|v|, to p + share*((off.n)*n - off), and down again,
-//     with a quarter of the share where that was not better (1 at first, least_share at least), at
-//     most most_slides times: until it was better by fine/4 at most, or the way has fine/2, or
-//     |off| - |off.n| is at most fine/4, which is as much as a plane would give; and not from where |v|
-//     is below `steady` times the slope, as on a film.
-//   So a penumbra depends on the solid alone, not on what the field is worth as a distance, and
-//   another bound makes other steps, but the same marks.
-//   FILMS: what covers a part of the light may be no solid: a film, where the field is 0 (TOUCHES), or
-//     a place where it is least and above 0, as between the face of a plate and the end of the tool that
-//     cuts it, if that ends a little beyond: there the field is a bound of the distance, and far below
-//     it. In a scene that may have some (`Frame::films`) the place p that would count is tried, and does
-//     not count if it is one: at most film_steps times, while g >= near = film_near*slack(s)/4: with v =
-//     gradient(p, a), a = shadow_arm*g, and the slope of TRUE DISTANCE, to p - g*v/(slope*|v|); where
-//     g does not become film_halved of what it was, to the lowest of that and the four taps; where that
-//     is not below film_lower of what it was, g is least there: a film. Where |g| < near, g is looked
-//     at film_looks times on a circle of radius film_look*slack(s)/4 about that place, across the way.
-//     If it is below -slack(s)/4 at none of them, that is a film (or an edge sharper than an angle
-//     between two looks).
+//   PENUMBRA, where 0 < shadow < closed_from at the end: closed(s) is as good as the field is near
+//   to a distance. So the way is gone anew, and of a mark where closed(s) < shadow the place of
+//   closed(s) is taken by what is NEAREST to the way between margin and reach, from there on, with
+//   fine = max(h, penumbra_fine*angle*s) and the slack at s. So a penumbra depends on the solid
+//   alone, not on what the field is worth as a distance, and another bound makes other steps, but
+//   the same marks.
 //   shadow = min(shadow, 1), at least darkest; result: shadow^2*(3 - 2*shadow), less what it is at
 //   darkest and divided by 1 less that, so that what is nearly dark is dark, without a step
 //
@@ -225,8 +226,11 @@ inline constexpr float nearer = 0.9f;
 inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.075f; // of half the height that is seen at the focus
 inline constexpr float nearly = 0.98f;
-inline constexpr int descent_steps = 8; // to the surface
-inline constexpr int most_slides = 6;   // along it
+inline constexpr float occlusion_fine = 1.0f / 256; // of the way to a sample, by its weight
+inline constexpr int descent_steps = 8;             // to the surface
+inline constexpr float descent_apart =
+    1.0f / 64;                        // the square of a sine: two faces that are not one
+inline constexpr int most_slides = 6; // along it
 inline constexpr float steady =
     0.5f; // of the slope: where a gradient is shorter it has no direction
 inline constexpr float least_share = 1.0f / 20;    // of a slide that is tried
@@ -245,15 +249,15 @@ inline constexpr float refined = 1.0f / 2048; // of a tolerance
 inline constexpr float across = 1.0f / 32; // the slope behind a touch, from which on it is no graze
 inline constexpr float probe = 8;          // slack/4: the first step beyond what is touched
 inline constexpr int film_steps = 8;       // to what may be a film
-inline constexpr float film_halved = 0.5f, film_lower = 0.97f; // of the value before
-inline constexpr float film_apart = 4; // what is a quarter nearer than the film closes in full
+inline constexpr float film_lower = 0.97f; // of the value before
 inline constexpr float film_near = 8, film_look = 64; // slack/4
-inline constexpr int film_looks = 24;                 // on a circle,
-inline constexpr float film_turn = 2.87979327f;       // so far apart: eleven of them
-inline constexpr int deep = 2;         // touches not above 0 that are a solid, one less
-inline constexpr int nearing = 3;      // samples, by which an estimate is hit
-inline constexpr int many_steps = 256; // red in a picture of steps
-inline constexpr int budget = 65536;   // evaluations a ray, where the scene does not say
+inline constexpr float film_flat = 1e-6f;       // the square of a sine: two ways that are as one
+inline constexpr int film_looks = 24;           // on a circle,
+inline constexpr float film_turn = 2.87979327f; // so far apart: eleven of them
+inline constexpr int deep = 2;                  // touches not above 0 that are a solid, one less
+inline constexpr int nearing = 3;               // samples, by which an estimate is hit
+inline constexpr int many_steps = 256;          // red in a picture of steps
+inline constexpr int budget = 65536;            // evaluations a ray, where the scene does not say
 inline constexpr float shadow_bias = 4;
 inline constexpr float min_angle = 0.002f; // a hard shadow's edge, soft enough not to flicker
 inline constexpr std::array<float, 3> background{0.35f, 0.45f, 0.6f};

@@ -228,6 +228,7 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
         frame.hi = vec_of(all.hi) + margin;
     }
     frame.unit_slope = scene.unit_slope;
+    frame.exact = scene.exact;
     double bound = 1;
     bool estimated = false;
     for (const ShapeFact &fact : scene.facts) {

@@ -61,6 +61,7 @@ struct Frame {
                         // larger than the bounds)
     glm::dvec3 lo{}, hi{};
     bool unit_slope = false; // Scene::unit_slope
+    bool exact = false;      // Scene::exact
     bool films = false;      // Scene::films; not with estimates, whose sign tells of no inside
     // Where some shape's bound is an estimate, of which nothing is known: the greatest bound of all
     // shapes, at least 1. Else 0.

@@ -98,6 +98,7 @@ void Prover::run() {
             derived.push_back(k);
         }
         scene.facts[i] = k.fact; // padded there alone, so that the slack does not add up
+        scene.facts[i].exact_outside = k.exact_outside;
         scene.facts[i].bounds = padded(k.fact.bounds);
         scene.facts[i].repeat.copy = padded(k.fact.repeat.copy);
     }

@@ -96,21 +96,27 @@ void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std:
     for (std::size_t k = 0; k < n; ++k) out[k] = (0.75f / h[k]) * out[k];
 }
 
+void slopes(Worker &worker, const Vec *points, const float *g, const float *h, Vec *gradient,
+            float *out, std::size_t n) {
+    gradients(worker, points, h, gradient, n);
+    const std::vector<float> &tap = worker.tap_values;
+    for (std::size_t k = 0; k < n; ++k) {
+        const float mean = 0.25f * (tap[k] + tap[n + k] + tap[2 * n + k] + tap[3 * n + k]);
+        const float bent = (mean - g[k]) / h[k];
+        out[k] = std::max(std::sqrt(dot(gradient[k], gradient[k]) + shading::crease * bent * bent),
+                          shading::min_slope);
+    }
+}
+
 void near(Worker &worker, const Vec *points, const float *g, const float *h, float *out,
           std::size_t n) {
     if (worker.stage.frame.unit_slope) {
         std::copy(g, g + n, out);
         return;
     }
-    std::vector<Vec> slopes(n);
-    gradients(worker, points, h, slopes.data(), n);
-    const std::vector<float> &tap = worker.tap_values;
-    for (std::size_t k = 0; k < n; ++k) {
-        const float mean = 0.25f * (tap[k] + tap[n + k] + tap[2 * n + k] + tap[3 * n + k]);
-        const float bent = (mean - g[k]) / h[k];
-        const float slope = std::sqrt(dot(slopes[k], slopes[k]) + shading::crease * bent * bent);
-        out[k] = g[k] / std::max(slope, shading::min_slope);
-    }
+    std::vector<Vec> gradient(n);
+    slopes(worker, points, g, h, gradient.data(), out, n);
+    for (std::size_t k = 0; k < n; ++k) out[k] = g[k] / out[k];
 }
 
 void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,

@@ -104,38 +104,30 @@ bool is_bound(const Worker &worker, std::size_t k); // of the last distances'
 void hits(Worker &worker, std::size_t n);           // at worker.points, into worker.hits
 // Scene::shaded at the first n points.
 void shaded_values(Worker &worker, const Columns &points, float *out, std::size_t n);
-// Its gradients at n points, with arms h; the taps at all first corners, then at all second ones …,
-// stay in worker.tap_values.
+// Its gradients at n points, with arms h.
 Vec corner(std::size_t i);
 void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std::size_t n);
+// And the slopes there (shading.h, TRUE DISTANCE), where it says g.
+void slopes(Worker &worker, const Vec *points, const float *g, const float *h, Vec *gradient,
+            float *out, std::size_t n);
 // The true distances near n points where it says g (shading.h, TRUE DISTANCE).
 void near(Worker &worker, const Vec *points, const float *g, const float *h, float *out,
           std::size_t n);
 
-// Which of these values tell of no solid (shading.h, FILMS).
-struct Approach {
-    Vec at;
-    float g;     // Scene::shaded there
-    float thick; // what is touched is below it
-    Vec across;  // the normal of the circle that is looked at, of length 1
+// A point, or a way to a light, that the solid may be near to (shading.h, NEAREST).
+struct Near {
+    Vec at;            // where the search begins,
+    float g;           // and Scene::shaded there
+    Vec from;          // what it is near to: this point,
+    Vec towards;       // or the way from there along this, of length 1
+    float first, last; // of the way
+    float angle;       // half the light's angular size; 0 for a point
+    float fine;        // as near to the surface as it has to be
+    float thick;       // what is touched is below it
+    float limit;       // what is farther off does not count
 };
-std::vector<char> find_films(Worker &worker, const std::vector<Approach> &ways);
-
-// A way to a light, and a place on it that the solid may be near to.
-struct Sight {
-    Vec from, towards, at;
-    float reach, margin; // as of the ShadowRay
-    float angle;         // half the light's angular size
-    float fine;          // as near to the surface as it has to be
-};
-// What is found there of the surface: how far off the way, in lights' sizes, and the field's value
-// there (shading.h, PENUMBRA).
-struct Beside {
-    float off;
-    Vec at;
-    float g;
-};
-std::vector<Beside> find_beside(Worker &worker, const std::vector<Sight> &sights);
+// How far off the solid is that is found: from a point; from a way in lights' sizes; or nowhere.
+std::vector<float> find_nearest(Worker &worker, const std::vector<Near> &places);
 
 // A hit's place: between the last two samples of its walk (shading.h, REFINED).
 struct Crossing {

@@ -23,7 +23,7 @@ struct Material {
 struct Points {
     std::vector<std::size_t> ray;
     std::vector<Vec> p, n;
-    std::vector<float> t, h, slope; // of the field
+    std::vector<float> t, h, slope; // of the field (TRUE DISTANCE)
     std::vector<Material> material;
     std::size_t size() const { return ray.size(); }
 };
@@ -32,11 +32,20 @@ void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
     std::vector<Vec> gradient(at.size()), above(at.size());
     for (std::size_t k = 0; k < at.size(); ++k)
         above[k] = at.p[k] - shading::lift * at.h[k] * rays[at.ray[k]].direction;
-    gradients(worker, above.data(), at.h.data(), gradient.data(), at.size());
+    const ir::Frame &frame = worker.stage.frame;
+    at.slope.assign(at.size(), 1.0f);
+    if (frame.exact || frame.unit_slope || !(worker.stage.shading.ambient_occlusion > 0)) {
+        gradients(worker, above.data(), at.h.data(), gradient.data(), at.size());
+    } else {
+        std::vector<float> g(at.size());
+        for (std::size_t k = 0; k < at.size(); ++k) worker.points.set(0, k, above[k]);
+        shaded_values(worker, worker.points, g.data(), at.size());
+        slopes(worker, above.data(), g.data(), at.h.data(), gradient.data(), at.slope.data(),
+               at.size());
+    }
     for (std::size_t k = 0; k < at.size(); ++k) {
-        const float slope = length(gradient[k]);
-        at.slope.push_back(slope);
-        at.n.push_back(slope > 0 ? gradient[k] / slope : -rays[at.ray[k]].direction);
+        const float size = length(gradient[k]);
+        at.n.push_back(size > 0 ? gradient[k] / size : -rays[at.ray[k]].direction);
     }
 }
 
@@ -91,114 +100,46 @@ void find_materials(Worker &worker, Points &at) {
 
 constexpr auto looks = static_cast<std::size_t>(shading::occlusion_samples);
 
-// What the samples along the normals find: values, and the slope where a sample is closed most.
-struct Surroundings {
-    float gap = 0; // between samples
-    std::array<std::vector<float>, looks> g;
-    std::vector<std::size_t> closest;
-    std::vector<float> slope;
-    std::vector<Vec> gradient; // there; 0 where nobody asked
-    std::vector<Vec> film;     // a place of the film that is nearest there
-    std::vector<char> on_film; // whether there is one
-    float away(std::size_t i) const { return gap * static_cast<float>(i + 1); }
-    Vec place(const Points &at, std::size_t k, std::size_t i) const {
-        return at.p[k] + away(i) * at.n[k];
-    }
-};
-
-Surroundings look_around(Worker &worker, const Points &at) {
-    const std::size_t count = at.size();
-    const bool apart = worker.stage.shaded_apart;
-    const ir::Frame &frame = worker.stage.frame;
-    Surroundings around;
-    around.gap = worker.stage.shading.occlusion_reach / static_cast<float>(looks);
-    std::array<std::vector<float>, looks> &g = around.g;
-    std::vector<std::size_t> &closest = around.closest;
-    closest.resize(count), around.slope.resize(count, 1), around.gradient.resize(count, Vec(0));
-    for (std::size_t i = 0; i < looks; ++i) {
-        const float x = around.away(i);
-        g[i].resize(count);
-        for (std::size_t k = 0; k < count; ++k) {
-            worker.points.set(0, k, around.place(at, k, i));
-            worker.limits[k] = x;
-        }
-        if (apart)
-            shaded_values(worker, worker.points, g[i].data(), count);
-        else
-            distances(worker, worker.points, g[i].data(), count, worker.limits.data());
-        for (std::size_t k = 0; k < count; ++k)
-            if (g[i][k] / x < g[closest[k]][k] / around.away(closest[k])) closest[k] = i;
-    }
-    if (frame.unit_slope && !frame.films) return around;
-    std::vector<std::size_t> steep;
-    std::vector<Vec> points;
-    std::vector<float> arms;
-    for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t i = closest[k];
-        if (!apart && g[i][k] >= shading::nearly * around.away(i)) continue;
-        steep.push_back(k), points.push_back(around.place(at, k, i)), arms.push_back(at.h[k]);
-    }
-    std::vector<Vec> found(steep.size());
-    gradients(worker, points.data(), arms.data(), found.data(), steep.size());
-    for (std::size_t j = 0; j < steep.size(); ++j) {
-        const std::size_t k = steep[j];
-        around.gradient[k] = found[j];
-        if (!frame.unit_slope)
-            around.slope[k] =
-                std::max({length(found[j]), std::min(at.slope[k], 1.0f), shading::min_slope});
-    }
-    return around;
-}
-
-// Whether what is nearest to the sample that is closed most is a film (shading.h, OCCLUSION).
-void find_films_of(Worker &worker, const Points &at, Surroundings &around) {
-    const Lengths lengths(worker.stage);
-    around.film.resize(at.size()), around.on_film.assign(at.size(), 0);
-    std::vector<std::size_t> tried;
-    std::vector<Approach> ways;
-    for (std::size_t k = 0; k < at.size(); ++k) {
-        const std::size_t i = around.closest[k];
-        const Vec v = around.gradient[k];
-        const Vec across = std::fabs(v.x) < std::fabs(v.y) ? Vec(0, v.z, -v.y) : Vec(-v.z, 0, v.x);
-        if (!(dot(across, across) > 0)) continue;
-        const float down = around.g[i][k] / (around.slope[k] * length(v));
-        around.film[k] = around.place(at, k, i) - down * v;
-        tried.push_back(k);
-        ways.push_back(
-            {around.film[k], 0, 0.25f * lengths.slack_at(at.t[k]), glm::normalize(across)});
-    }
-    for (std::size_t j = 0; j < ways.size(); ++j) worker.points.set(0, j, ways[j].at);
-    shaded_values(worker, worker.points, worker.values.data(), ways.size());
-    for (std::size_t j = 0; j < ways.size(); ++j) ways[j].g = worker.values[j];
-    const std::vector<char> found = find_films(worker, ways);
-    for (std::size_t j = 0; j < tried.size(); ++j) around.on_film[tried[j]] = found[j];
-}
-
 // How much of the surroundings five samples along the normal find closed (thesis, 4.2.1).
 std::vector<float> find_occlusion(Worker &worker, const Points &at) {
-    const ir::Frame &frame = worker.stage.frame;
-    Surroundings around = look_around(worker, at);
-    if (frame.films) find_films_of(worker, at, around);
+    const Stage &stage = worker.stage;
+    const Lengths lengths(stage);
+    const float gap = stage.shading.occlusion_reach / static_cast<float>(looks);
     std::vector<float> sum(at.size(), 0.0f);
     std::vector<float> own = at.slope; // what the surface itself rises by: what rises so is open
+    std::vector<Near> places;
+    std::vector<std::size_t> of;
     float weight = 1, total = 0;
     for (std::size_t i = 0; i < looks; ++i) {
         weight *= 0.5f;
         total += weight;
+        const float away = gap * static_cast<float>(i + 1);
         for (std::size_t k = 0; k < at.size(); ++k) {
-            const float rise = around.g[i][k] / around.away(i);
-            float slope = around.slope[k];
-            own[k] = std::max({own[k], rise, shading::min_slope});
-            if (!frame.unit_slope && own[k] < slope)
-                slope += (own[k] - slope) * clamp(rise / own[k], 0.0f, 1.0f);
-            float closed = clamp(1.0f - rise / slope, 0.0f, 1.0f);
-            if (frame.films && around.on_film[k]) {
-                const Vec off = around.place(at, k, i) - around.film[k];
-                const float film = std::max(std::fabs(dot(off, around.gradient[k])), 1e-30f);
-                closed *= clamp(shading::film_apart * (1 - around.g[i][k] / film), 0.0f, 1.0f);
-            }
-            sum[k] += weight * closed;
+            worker.points.set(0, k, at.p[k] + away * at.n[k]);
+            worker.limits[k] = away;
         }
+        if (stage.shaded_apart)
+            shaded_values(worker, worker.points, worker.values.data(), at.size());
+        else
+            distances(worker, worker.points, worker.values.data(), at.size(), worker.limits.data());
+        places.clear(), of.clear();
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            const float g = worker.values[k];
+            if (stage.frame.exact || g < 0) {
+                sum[k] += weight * clamp(1.0f - g / away, 0.0f, 1.0f);
+                continue;
+            }
+            if (!stage.frame.unit_slope) own[k] = std::max(own[k], g / away);
+            if (g >= shading::nearly * own[k] * away) continue;
+            const Vec from = at.p[k] + away * at.n[k];
+            of.push_back(k);
+            places.push_back({from, g, from, Vec(0), 0, 0, 0,
+                              std::max(at.h[k], shading::occlusion_fine / weight * away),
+                              0.25f * lengths.slack_at(at.t[k]), away});
+        }
+        const std::vector<float> found = find_nearest(worker, places);
+        for (std::size_t j = 0; j < of.size(); ++j)
+            sum[of[j]] += weight * clamp(1.0f - found[j] / away, 0.0f, 1.0f);
     }
     for (float &s : sum) s /= total;
     return sum;

@@ -143,7 +143,7 @@ class Shadows {
     void look() {
         if (close_.empty()) return;
         measure();
-        sights_.clear(), of_.clear();
+        places_.clear(), of_.clear();
         for (std::size_t j = 0; j < close_.size(); ++j) {
             const Close &close = close_[j];
             State &state = states_[close.ray];
@@ -156,31 +156,16 @@ class Shadows {
                 state.shadow = std::max(near_[j] / light, shading::darkest);
                 continue;
             }
-            of_.push_back(j);
-            sights_.push_back({ray.from, ray.towards, points_[j], ray.reach, ray.margin, angle_,
-                               std::max(ray.arm, shading::penumbra_fine * light)});
+            of_.push_back(close.ray);
+            places_.push_back({points_[j], values_[j], ray.from, ray.towards, ray.margin, ray.reach,
+                               angle_, std::max(ray.arm, shading::penumbra_fine * light),
+                               0.25f * lengths_.slack_at(close.s), state.shadow});
         }
-        std::vector<Beside> beside = find_beside(worker_, sights_);
-        leave_out_films(beside);
+        const std::vector<float> off = find_nearest(worker_, places_);
         for (std::size_t i = 0; i < of_.size(); ++i) {
-            float &shadow = states_[close_[of_[i]].ray].shadow;
-            shadow = std::min(shadow, std::max(beside[i].off, shading::darkest));
+            float &shadow = states_[of_[i]].shadow;
+            shadow = std::min(shadow, std::max(off[i], shading::darkest));
         }
-    }
-    void leave_out_films(std::vector<Beside> &beside) {
-        if (!worker_.stage.frame.films) return;
-        std::vector<std::size_t> tried;
-        std::vector<Approach> ways;
-        for (std::size_t i = 0; i < of_.size(); ++i) {
-            const Close &close = close_[of_[i]];
-            if (!(beside[i].off < states_[close.ray].shadow)) continue;
-            tried.push_back(i);
-            ways.push_back({beside[i].at, beside[i].g, 0.25f * lengths_.slack_at(close.s),
-                            rays_[close.ray].towards});
-        }
-        const std::vector<char> films = find_films(worker_, ways);
-        for (std::size_t k = 0; k < tried.size(); ++k)
-            if (films[k]) beside[tried[k]].off = shading::nowhere;
     }
 
     // Of what is close: g in values_, the true distance in near_.
@@ -216,8 +201,8 @@ class Shadows {
     std::vector<Close> close_;
     std::vector<Vec> points_;
     std::vector<float> next_, arms_, values_, near_;
-    std::vector<Sight> sights_;
-    std::vector<std::size_t> of_; // which of what is close each is
+    std::vector<Near> places_;
+    std::vector<std::size_t> of_; // whose way each is
 };
 
 } // namespace

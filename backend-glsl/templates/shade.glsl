@@ -8,7 +8,10 @@ vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
     vec3 g = vec3(0.0);
     vec3 n = -direction;
     float slope = 0.0;
-    int taps = 4;
+$if MANY_SLOPES
+    float bent = 0.0, own = 1.0; // what rises as the surface itself does is open
+$end
+    int taps = $SURFACE_TAPS;
 $if !SKIP_SHADING
     fathom_Lighting look = fathom_lighting();
     float open = 1.0;
@@ -18,111 +21,51 @@ $if !SKIP_SHADING
     reach /= $OCCLUSION_SAMPLES;
     if (look.ambient_occlusion > 0.0) taps = $ALL_TAPS;
 $if PASSES
-    if (fathom_light_kept >= 0) taps = 4; // the colour is known
+    if (fathom_light_kept >= 0) taps = $SURFACE_TAPS; // the colour is known
 $end
 $end
-$if TWICE
-    for (int i = $ZERO; i < 4; ++i) {
-        vec3 e = fathom_corner(i);
-        g += e * $SHADED(above + h * e);
+$# The gradient's four points, and their middle where slopes differ. Then, along the normal, the occlusion's five.
+$if APART
+    for (int i = $ZERO; i < $SURFACE_TAPS$AND_PRESENT; ++i) {
+        vec3 e = fathom_corner(i & 3) * float(i < 4);
+        float f = $SHADED(above + h * e);
+        {
+$include surface_tap
+        }
     }
-    g *= 0.75 / h;
-    slope = length(g);
-    if (slope > 0.0) n = g / slope;
-    int done = 4;
+    int done = $SURFACE_TAPS;
 $else
     int done = 0;
 $end
-$# The gradient's four points; along the normal that they give, the occlusion's five; and where these
-$# are closed most, the gradient again.
 $if !SKIP_SHADING
-    vec3 sum = vec3(0.0), towards = vec3(0.0);
-    float least = 1e30, x = 0.0;
-    float g1 = 0.0, g2 = 0.0, g3 = 0.0, g4 = 0.0, g5 = 0.0; // over their distances from p
     for (int i = $ZERO + done; i < taps$AND_PRESENT; ++i) {
-        bool outward = i > 3 && i < 9;
-        float away = mix(x, reach * float(i - 3), outward);
-        vec3 place = mix(p + away * n, above, float(i < 4));
-        vec3 e = fathom_corner(i - 9 * int(i > 3));
-        if (!outward) place += h * e;
+        bool outward = i >= $SURFACE_TAPS;
+        float away = reach * float(i - $SURFACE_TAPS + 1);
+        vec3 e = fathom_corner(i & 3) * float(i < 4);
+        vec3 place = outward ? p + away * n : above + h * e;
         float f = $SHADED(place);
-        if (outward) {
-            f /= away;
-            g1 = g2;
-            g2 = g3;
-            g3 = g4;
-            g4 = g5;
-            g5 = f;
-            if (f < least) {
-                least = f;
-                x = away;
-            }
-$if CLOSEST
-$if !SHADED_APART
-            if (i == 8 && least >= $NEARLY) break;
-$end
-$end
+        if (!outward) {
+$include surface_tap
             continue;
         }
-        sum += f * e;
-$if CLOSEST
-        if (i == 12) towards = 0.75 / h * sum;
-$end
-$if !TWICE
-        if (i == 3) {
-            g = 0.75 / h * sum;
-            slope = length(g);
-            if (slope > 0.0) n = g / slope;
-            sum = vec3(0.0);
-        }
-$end
-    }
-$if UNIT_SLOPE
-    float rise = 1.0;
+        weight *= 0.5;
+$if !EXACT
+$if MANY_SLOPES
+        own = max(own, f / away);
+        if (f >= $NEARLY * own * away) continue;
 $else
-    float rise = length(towards);
-    rise = $FLAT ? 1.0 : max(max(rise, min(slope, 1.0)), $MIN_SLOPE);
+        if (f >= $NEARLY * away) continue;
 $end
-    if (taps > 4) {
-        vec4 rises = vec4(g1, g2, g3, g4), slopes = vec4(rise);
-        float slope5 = rise;
-$if !UNIT_SLOPE
-$# What rises as the surface itself does is open, whatever the slope of what closes most.
-        vec4 own = max(rises, max(slope, $MIN_SLOPE));
-        own.y = max(own.x, own.y);
-        own.zw = max(own.zw, own.y);
-        own.w = max(own.z, own.w);
-        float own5 = max(own.w, g5);
-        slopes += min(own - rise, 0.0) * clamp(rises / own, 0.0, 1.0);
-        slope5 += min(own5 - rise, 0.0) * clamp(g5 / own5, 0.0, 1.0);
+        int looks = 0;
+        if (f >= 0.0)
+            f = fathom_nearest(place, vec3(0.0), place, f, 0.0, 0.0, 0.0, max(h, $OCCLUSION_FINE / weight * away),
+                               0.25 * fathom_slack_at(t), away, looks);
+$if PASSES
+        fathom_taken += looks;
 $end
-        vec4 closed = clamp(1.0 - rises / slopes, 0.0, 1.0);
-        float closed5 = clamp(1.0 - g5 / slope5, 0.0, 1.0);
-$if FILMS
-        vec3 across = abs(towards.x) < abs(towards.y) ? vec3(0.0, towards.z, -towards.y) : vec3(-towards.z, 0.0, towards.x);
-        bool on_film = dot(across, across) > 0.0;
-        vec3 film = p + x * n;
-        if (on_film) {
-            film -= least * x / (rise * length(towards)) * towards;
-            on_film = fathom_film(film, normalize(across), 0.25 * fathom_slack_at(t));
-        }
-        if (on_film) {
-            vec4 ways = reach * vec4(1.0, 2.0, 3.0, 4.0);
-            float way5 = 5.0 * reach;
-            float off = dot(p - film, towards), turn = dot(n, towards);
-            closed *= clamp($FILM_APART * (1.0 - ways * rises / max(abs(off + turn * ways), 1e-30)), 0.0, 1.0);
-            closed5 *= clamp($FILM_APART * (1.0 - way5 * g5 / max(abs(off + turn * way5), 1e-30)), 0.0, 1.0);
-        }
 $end
-        open -= weight * (dot(closed, vec4(0.5, 0.25, 0.125, 0.0625)) + 0.03125 * closed5);
+        open -= weight * clamp(1.0 - f / away, 0.0, 1.0);
     }
-$else
-$if !TWICE
-    for (int i = $ZERO; i < taps$AND_PRESENT; ++i) g += fathom_corner(i) * $SHADED(above + h * fathom_corner(i));
-    g *= 0.75 / h;
-    slope = length(g);
-    if (slope > 0.0) n = g / slope;
-$end
 $end
 $if LOCAL_NORMALS
 $# The normal in the paint's own space.

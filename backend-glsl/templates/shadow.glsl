@@ -1,4 +1,4 @@
-$# How much of a light arrives, by ir/shading.h (SHADOW, FILMS); the sibling of backend-cpu/trace/shadow.cpp.
+$# How much of a light arrives, by ir/shading.h (SHADOW, PENUMBRA); the sibling of backend-cpu/trace/shadow.cpp. After `nearest`.
 $# The scene: float $SHADED(vec3), float sdf(vec3).
 $if !SKIP_SHADING
 
@@ -10,146 +10,6 @@ float fathom_power(float x) { return intBitsToFloat(floatBitsToInt(x) & 0x7f8000
 float fathom_mark(float s, float d, float edge, float quiet, float angle) {
     float gap = fathom_power($MARKS * angle * s);
     return gap * min(floor(min(s - (d - edge), quiet) / gap), ceil(s / gap) - 1.0);
-}
-
-$if FILMS
-// Whether what the field says at p tells of no solid (FILMS). What is touched is below `thick`; the circle lies across l.
-bool fathom_film(vec3 p, vec3 l, float thick) {
-    vec3 side = normalize(abs(l.x) < 0.6 ? vec3(0.0, l.z, -l.y) : vec3(-l.z, 0.0, l.x));
-    vec3 sum = vec3(0.0), around = vec3(0.0), lowest = p;
-    float g = 0.0, arm = 0.0, low = 0.0, bent = 0.0;
-    int step = 0, tap = -1, look = -1; // of a gradient, -1: the field itself; of the circle, -1: not there yet
-    for (int i = $ZERO; i < 5 * $FILM_STEPS + 1 + $FILM_LOOKS; ++i) {
-$if AROUND
-        fathom_exact = true;
-$end
-        float f = $SHADED(p + around);
-$if AROUND
-        fathom_exact = false;
-$end
-$if CACHED
-        if (fathom_absent) return false;
-$end
-        if (look >= 0) {
-            if (!(f >= -thick)) return false;
-            ++look;
-            if (look == $FILM_LOOKS) return true;
-        }
-        if (look < 0 && tap >= 0) {
-            sum += f * fathom_corner(tap);
-            bent += f;
-            if (tap == 0 || f < low) {
-                low = f;
-                lowest = p + around;
-            }
-            ++tap;
-            around = arm * fathom_corner(tap & 3);
-            if (tap == 4) {
-                sum *= 0.75 / arm;
-                bent *= 0.25 / arm;
-                float slope = max(sqrt(dot(sum, sum) + $CREASE * bent * bent), $MIN_SLOPE);
-                p -= g / (slope * max(length(sum), $MIN_SLOPE)) * sum;
-                around = vec3(0.0);
-                tap = -1;
-                continue;
-            }
-        }
-        if (look < 0 && tap < 0) {
-            if (step > 0) {
-                if (!(f < $FILM_HALVED * g) && low < f) {
-                    f = low;
-                    p = lowest;
-                }
-                if (!(f < $FILM_LOWER * g)) return true; // a least value above 0
-            }
-            g = f;
-            if (!(g > -$FILM_NEAR * thick)) return false;
-            if (g < $FILM_NEAR * thick) look = 0;
-            if (look < 0 && step == $FILM_STEPS) return false;
-            if (look < 0) {
-                ++step;
-                tap = 0;
-                arm = $SHADOW_ARM * g;
-                sum = vec3(0.0);
-                bent = -4.0 * g;
-                around = arm * fathom_corner(0);
-            }
-        }
-        if (look >= 0) {
-            float angle = $FILM_TURN * float(look);
-            around = $FILM_LOOK * thick * (cos(angle) * side + sin(angle) * cross(l, side));
-        }
-    }
-    return false;
-}
-
-$end
-// How far what is found of the surface below p is off the way from q along l, in lights' sizes (PENUMBRA); p becomes
-// its place, and the evaluations are added to `looks`.
-float fathom_beside(vec3 q, vec3 l, inout vec3 p, float reach, float angle, float margin, float fine,
-                    inout int looks) {
-    vec3 v = vec3(0.0), around = vec3(0.0), best = p, along = vec3(0.0);
-    float least = $UNSEEN, share = 1.0, g = 0.0, slope = 0.0, arm = 0.0, bent = 0.0;
-    int steps = 0, slides = 0, tap = -1; // of a gradient, -1: the field itself
-    for (int i = $ZERO; i < ($MOST_SLIDES + 1) * (5 * $DESCENT_STEPS + 1); ++i) {
-        ++looks;
-$if AROUND
-        fathom_exact = true;
-$end
-        float f = $SHADED(p + around);
-$if AROUND
-        fathom_exact = false;
-$end
-$if CACHED
-        if (fathom_absent) return $UNSEEN;
-$end
-        if (tap >= 0) {
-            v += f * fathom_corner(tap);
-            bent += f;
-            ++tap;
-            around = arm * fathom_corner(tap & 3);
-            if (tap == 4) {
-                v *= 0.75 / arm;
-                bent *= 0.25 / arm;
-                slope = max(sqrt(dot(v, v) + $CREASE * bent * bent), $MIN_SLOPE);
-                p -= g / (slope * max(length(v), $MIN_SLOPE)) * v;
-                ++steps;
-                around = vec3(0.0);
-                tap = -1;
-            }
-            continue;
-        }
-        g = f;
-        bool landed = abs(g) < fine * slope;
-        if (landed || steps == $DESCENT_STEPS) {
-            float x = dot(p - q, l);
-            vec3 off = p - q - x * l;
-            float offset = landed && x > margin && x < reach ? length(off) / (angle * x) : $UNSEEN;
-            bool nearer = offset < least;
-            if (nearer) {
-                float gain = (least - offset) * angle * x;
-                least = offset;
-                best = p;
-                vec3 n = v / max(length(v), $MIN_SLOPE);
-                along = dot(off, n) * n - off;
-                if (length(v) < $STEADY * slope) break;
-                if (!(min(gain, length(off) - abs(dot(off, n))) > 0.25 * fine)) break;
-            }
-            if (!nearer) share *= 0.25;
-            if (slides == $MOST_SLIDES || share < $LEAST_SHARE || !(share * length(along) > 0.5 * fine)) break;
-            p = best + share * along;
-            steps = 0;
-            ++slides;
-            continue;
-        }
-        tap = 0;
-        arm = max(fine, $SHADOW_ARM * abs(g));
-        v = vec3(0.0);
-        bent = -4.0 * g;
-        around = arm * fathom_corner(0);
-    }
-    p = best;
-    return least;
 }
 
 // How much of a light arrives: marched from the light towards the point (thesis, 4.2.1).
@@ -302,19 +162,16 @@ $else
 $end
         quiet = x - $CALM * (min(near, value) - shadow * angle * x);
         if (near < shadow * angle * x) {
-            vec3 p = q + x * l;
             float off = near / (angle * x);
             if (careful) {
                 int looks = 0;
-                off = fathom_beside(q, l, p, reach, angle, margin, max(h, $FINE * angle * x), looks);
+                off = fathom_nearest(q, l, q + x * l, value, margin, reach, angle, max(h, $FINE * angle * x),
+                                     0.25 * fathom_slack_at(x), shadow, looks);
 $if PASSES
                 limit -= looks;
                 fathom_taken += looks;
 $end
             }
-$if FILMS
-            if (careful && off < shadow && fathom_film(p, l, 0.25 * fathom_slack_at(x))) off = $UNSEEN;
-$end
 $if CACHED
             if (fathom_absent) return 1.0;
 $end

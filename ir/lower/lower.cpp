@@ -96,7 +96,8 @@ void Lowering::run() {
     }
 
     scene_.films = may_have_films();
-    scene_.unit_slope = unit_slope_[scene_.root.index] != 0;
+    scene_.exact = fact(scene_.root).exact_outside;
+    scene_.unit_slope = scene_.exact || unit_slope_[scene_.root.index] != 0;
     scene_.shaded = scene_.distance;
     if (shaded_apart_[scene_.root.index]) {
         const NodeId shaded = expression_of(Reading::Shaded, scene_.root, frame);

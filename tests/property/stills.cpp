@@ -300,6 +300,24 @@ TEST_CASE("two texts of one solid give one picture") {
     }
 }
 
+TEST_CASE("what closes a place is as near as the solid is, not as a field says") {
+    const std::string scene =
+        camera + "lighting(occlusion_reach: 0.4, soft_shadows: 0)\nplane(Y, -0.7)\n";
+    const std::pair<const char *, const char *> pairs[] = {
+        {"box([2, 1.4, 1.4]) - box([2, 1.4, 1.6]).translate([0.3, 0.3, 0])",
+         "box([0.3, 1.4, 1.4]).translate(x: -0.85) | box([2, 0.3, 1.4]).translate(y: -0.55)"},
+        {"box(1.4) - union { for a in [X, Y, Z] { cylinder(0.4, 1.42).orient(Y, a) } }",
+         "box(1.4) - union { for a in [X, Y, Z] { cylinder(0.4, 3).orient(Y, a) } }"},
+        {"box([1.8, 1.2, 1.4]) - box([0.2, 2, 2]).repeat([0.4, 0, 0], count: [4, 1, 1])",
+         "for i in -2..=2 { box([0.2, 1.2, 1.4]).translate(x: 0.4 * i) }"},
+        {"box([2, 1, 0.4]).scale([0.5, 1, 3])", "box([1, 1, 1.2])"},
+    };
+    for (const auto &[cut, whole] : pairs) {
+        INFO(cut);
+        CHECK(different(drawn(scene + cut + "\n"), drawn(scene + whole + "\n")) <= few);
+    }
+}
+
 TEST_CASE("what two parts leave of each other has a soft shadow without stripes") {
     const auto sliver = [](const std::string &thin, const std::string &thick) {
         return "camera(at: [3, 2.6, 5], look_at: [0, 0, 0], fov: 40deg)\n"

@@ -187,7 +187,7 @@ TEST_CASE("no branch in a loop has two arms") {
     const std::string folder = FATHOM_SOURCE_DIR "/backend-glsl/";
     for (const auto &file : std::filesystem::directory_iterator(folder + "helpers"))
         names.push_back(file.path().string());
-    for (const char *name : {"march", "march_ahead", "shadow_ahead", "shadow", "shade"})
+    for (const char *name : {"march", "march_ahead", "shadow_ahead", "nearest", "shadow", "shade"})
         names.push_back(folder + "templates/" + name + ".glsl");
     CHECK(names.size() > 8);
     for (const std::string &name : names) {

@@ -17,24 +17,25 @@ using glsl::Values;
 namespace {
 
 const std::vector<std::string> flags{
-    "BOXED",     "UNIT_SLOPE",      "CLOSEST",    "SHADED_APART", "PASSES",
-    "COUNTED",   "HAS_SAFE_RADIUS", "TWICE",      "SKIP_SHADING", "LOCAL_NORMALS",
-    "PICK",      "CACHED",          "FAR_CELLS",  "AROUND",       "ONE_LIGHT",
-    "BLENDED",   "PICTURE",         "FIELD_ONLY", "TIME",         "ES",
-    "LOCATIONS", "MARKED",          "OWN",        "UNPAINTED",    "PAINTED",
-    "LIT",       "CLASSIC",         "SOFT",       "FOUR_OUTPUTS", "ESTIMATED",
-    "FILMS"};
+    "BOXED",        "UNIT_SLOPE",   "MANY_SLOPES",   "EXACT",
+    "SHADED_APART", "PASSES",       "COUNTED",       "HAS_SAFE_RADIUS",
+    "APART",        "SKIP_SHADING", "LOCAL_NORMALS", "PICK",
+    "CACHED",       "FAR_CELLS",    "AROUND",        "ONE_LIGHT",
+    "BLENDED",      "PICTURE",      "FIELD_ONLY",    "TIME",
+    "ES",           "LOCATIONS",    "MARKED",        "OWN",
+    "UNPAINTED",    "PAINTED",      "LIT",           "CLASSIC",
+    "SOFT",         "FOUR_OUTPUTS", "ESTIMATED",     "FILMS"};
 
 // What a flag decides beside its own `$if`, as the emitter has it.
 void add_counts(Values &values) {
     for (const char *count :
-         {"LIGHTS",     "MAX_STEPS",     "ALL_TAPS",    "REFINEMENTS", "DEEP",      "NEARING",
-          "MANY_STEPS", "DESCENT_STEPS", "MOST_SLIDES", "CHECK_STEPS", "AGES",      "ROWS",
-          "COUNT",      "WISHES",        "SAMPLED",     "HIGHEST",     "HIGH_BITS", "HIGH_MASK",
-          "PLACE_BITS", "FILM_STEPS",    "FILM_LOOKS",  "HEAD",        "TAIL",      "LIMIT",
-          "INSERTED",   "EVICTED",       "DELETED",     "CROWDED",     "FULL",      "SWEPT",
-          "CHANGED",    "PAID",          "WASTED",      "LEFT",        "STEPS",     "MANY",
-          "REFUSED",    "STRIDE",        "LAST"})
+         {"LIGHTS",    "MAX_STEPS",  "ALL_TAPS",      "SURFACE_TAPS", "REFINEMENTS", "DEEP",
+          "NEARING",   "MANY_STEPS", "DESCENT_STEPS", "MOST_SLIDES",  "CHECK_STEPS", "AGES",
+          "ROWS",      "COUNT",      "WISHES",        "SAMPLED",      "HIGHEST",     "HIGH_BITS",
+          "HIGH_MASK", "PLACE_BITS", "FILM_STEPS",    "FILM_LOOKS",   "HEAD",        "TAIL",
+          "LIMIT",     "INSERTED",   "EVICTED",       "DELETED",      "CROWDED",     "FULL",
+          "SWEPT",     "CHANGED",    "PAID",          "WASTED",       "LEFT",        "STEPS",
+          "MANY",      "REFUSED",    "STRIDE",        "LAST"})
         values.emplace(count, "2");
 }
 
@@ -44,7 +45,6 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
         {"SHADED", is("SHADED_APART") ? "fathom_shaded" : "sdf"},
         {"FOUR_OUTPUTS",
          is("FOUR_OUTPUTS") && name == "march" ? "1" : ""}, // others stand beside a pick
-        {"FLAT", is("SHADED_APART") ? "false" : "least >= 0.5"},
         {"AND_PRESENT", is("CACHED") ? " && !fathom_absent" : ""},
         {"UNLIT", is("ONE_LIGHT") ? "return color" : "continue"},
         {"SUN_REACH", is("BOXED") ? "max(fathom_box(q, l).y, 0.0)" : "fathom_far"},
@@ -116,9 +116,10 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "FILM_NEAR",
                                "FILM_LOOK",
                                "FILM_TURN",
-                               "FILM_HALVED",
+                               "FILM_FLAT",
+                               "DESCENT_APART",
                                "FILM_LOWER",
-                               "FILM_APART",
+                               "OCCLUSION_FINE",
                                "BEHIND",
                                "LIFT",
                                "SHARE",
@@ -255,9 +256,16 @@ Frame frame_of(std::string_view name, const Values &values) {
         return {marched + "void ahead(vec3 q, vec3 l, float s, bool mark, float shadow, float "
                           "angle, float margin) {\n    while (s > margin) {\n",
                 "    }\n}\n" + end};
-    if (name == "shadow") return {marched, end};
-    if (name == "shade") return {marched + expanded("shadow"), end};
-    if (name == "picture") return {marched + expanded("shadow") + expanded("shade"), end};
+    if (name == "nearest") return {marched, end};
+    const std::string searched = marched + expanded("nearest");
+    if (name == "shadow") return {searched, end};
+    if (name == "shade") return {searched + expanded("shadow"), end};
+    if (name == "picture") return {searched + expanded("shadow") + expanded("shade"), end};
+    if (name == "surface_tap")
+        return {marched +
+                    "void tap(int i, float f, vec3 e, float h) {\n    vec3 g = vec3(0.0), n = "
+                    "g;\n    float slope = 0.0, bent = 0.0, own = 1.0;\n",
+                "}\n" + end};
     if (name == "probe")
         return {version + inputs.substr(inputs.find("uniform")) + cells + cache + expanded("march"),
                 ""};

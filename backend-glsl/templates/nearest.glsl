@@ -1,0 +1,140 @@
+$# Where the solid is nearest, by ir/shading.h (NEAREST, FILMS); the sibling of backend-cpu/trace/nearest.cpp.
+$# The scene: float $SHADED(vec3).
+$if !SKIP_SHADING
+$if FILMS
+
+vec3 fathom_perpendicular(vec3 v) {
+    return abs(v.x) < abs(v.y) ? vec3(0.0, v.z, -v.y) : vec3(-v.z, 0.0, v.x);
+}
+$end
+
+// How far off the solid is that is found from p on, where the field says g: from the point `from`, or, with half the
+// light's angular size, in lights' sizes from the way along l. What is not below `limit` does not count. The evaluations
+// are added to `looks`.
+float fathom_nearest(vec3 from, vec3 l, vec3 p, float g, float first, float last, float angle, float fine,
+                     float thick, float limit, inout int looks) {
+    bool point = !(angle > 0.0);
+    vec3 v = vec3(0.0), u = v, best = p, along = v; // u: the gradient before, by which the field is `ahead` at p
+    float least = $UNSEEN, share = 1.0, slope = 0.0, bent = -4.0 * g, ahead = 0.0;
+    float arm = max(fine, $SHADOW_ARM * abs(g));
+    vec3 around = arm * fathom_corner(0);
+    int steps = 0, slides = 0, tap = 0; // of a gradient, -1: the field itself
+$if FILMS
+    vec3 best_v = v, best_way = v;
+    float best_g = g, before = g;
+    bool found = false; // the place is: is it a film?
+    int look = -1;      // of the circle round it
+$end
+    for (int i = $ZERO; i < ($MOST_SLIDES + 1) * (5 * $DESCENT_STEPS + 1) + 5 * $FILM_STEPS + $FILM_LOOKS; ++i) {
+        ++looks;
+$if AROUND
+        fathom_exact = true;
+$end
+        float f = $SHADED(p + around);
+$if AROUND
+        fathom_exact = false;
+$end
+$if CACHED
+        if (fathom_absent) return $UNSEEN;
+$end
+        if (tap >= 0) {
+            v += f * fathom_corner(tap);
+            bent += f;
+            ++tap;
+            around = arm * fathom_corner(tap & 3);
+            if (tap == 4) {
+                v *= 0.75 / arm;
+                bent *= 0.25 / arm;
+                slope = max(sqrt(dot(v, v) + $CREASE * bent * bent), $MIN_SLOPE);
+                vec3 by = -g / (slope * max(length(v), $MIN_SLOPE)) * v;
+                float vv = dot(v, v), uu = dot(u, u), uv = dot(u, v), det = vv * uu - uv * uv;
+                if (steps > 0 && ahead + dot(u, by) > 0.0 && det > $DESCENT_APART * vv * uu)
+                    by = ((ahead * uv - g * uu) * v + (g * uv - ahead * vv) * u) / det;
+                p += by;
+                ahead = g + dot(v, by);
+                u = v;
+                ++steps;
+                around = vec3(0.0);
+                tap = -1;
+            }
+            continue;
+        }
+$if FILMS
+        if (look >= 0) {
+            if (!(f >= -thick)) return least;
+            ++look;
+            if (look == $FILM_LOOKS) return $UNSEEN;
+        }
+        if (look < 0) g = f;
+        if (look < 0 && found && !(g < $FILM_LOWER * before)) return $UNSEEN; // a least value above 0
+        bool landed = abs(g) < fine * slope;
+        if (!found && (landed || steps == $DESCENT_STEPS)) {
+$else
+        g = f;
+        bool landed = abs(g) < fine * slope;
+        if (landed || steps == $DESCENT_STEPS) {
+$end
+            float x = dot(p - from, l);
+            vec3 off = p - from - x * l;
+            float size = point ? 1.0 : angle * x;
+            float offset = landed && (point || x > first && x < last) ? length(off) / size : $UNSEEN;
+            bool slide = true, nearer = offset < least;
+            if (nearer) {
+                vec3 n = v / max(length(v), $MIN_SLOPE);
+                float gain = (least - offset) * size;
+                least = offset;
+                best = p;
+$if FILMS
+                best_v = v;
+                best_way = off;
+                best_g = g;
+$end
+                along = dot(off, n) * n - off;
+                slide = length(v) >= $STEADY * slope && min(gain, length(off) - abs(dot(off, n))) > 0.25 * fine;
+            }
+            if (!nearer) share *= 0.25;
+            slide = slide && slides < $MOST_SLIDES && share >= $LEAST_SHARE && share * length(along) > 0.5 * fine;
+            if (slide) {
+                p = best + share * along;
+                steps = 0;
+                ++slides;
+                continue;
+            }
+            if (!(least < limit)) return $UNSEEN;
+$if FILMS
+            found = true;
+            p = best;
+            g = best_g;
+            fine = $FILM_NEAR * thick;
+            steps = 0;
+$else
+            return least;
+$end
+        }
+$if FILMS
+        if (found && look < 0) {
+            if (!(g > -fine)) return least;
+            if (g < fine) look = 0;
+            if (look < 0 && steps == $FILM_STEPS) return least;
+            before = g;
+        }
+        if (look >= 0) {
+            vec3 edge = cross(best_v, best_way);
+            if (!(dot(edge, edge) > $FILM_FLAT * dot(best_v, best_v) * dot(best_way, best_way)))
+                edge = fathom_perpendicular(best_v);
+            edge = normalize(edge);
+            vec3 side = normalize(fathom_perpendicular(edge));
+            float turn = $FILM_TURN * float(look);
+            around = $FILM_LOOK * thick * (cos(turn) * side + sin(turn) * cross(edge, side));
+            continue;
+        }
+$end
+        tap = 0;
+        arm = max(fine, $SHADOW_ARM * abs(g));
+        v = vec3(0.0);
+        bent = -4.0 * g;
+        around = arm * fathom_corner(0);
+    }
+    return least;
+}
+$end
