@@ -145,7 +145,7 @@
 //     if that ends a little beyond. In a scene that may have some (`Frame::films`) the place that
 //     counts is tried, and is nowhere if it is one: the way goes on down, at most film_steps times,
 //     while g >= near = film_near*thick, thick = slack/4 there; where g does not become less than
-//     film_lower of what it was, it is least there: a film. Where |g| < near, g is looked at
+//     film_lower of what it was, but in the first of these steps, it is least there: a film. Where |g| < near, g is looked at
 //     film_looks times on a circle of radius film_look*thick about that place, in the plane of off
 //     and v, which an edge is across (where both are one way, in some plane that holds it). If it
 //     is below -thick at none of them, that is a film (or an edge sharper than an angle between two

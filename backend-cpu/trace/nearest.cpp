@@ -148,7 +148,7 @@ class Searches {
             descend();
             std::size_t k = 0;
             std::erase_if(ways_, [&](const Descent &way) {
-                const bool lower = way.g < shading::film_lower * before_[k++];
+                const bool lower = way.g < shading::film_lower * before_[k++] || way.steps == 1;
                 if (!lower) best_[way.of].off = shading::nowhere; // a least value above 0
                 return !lower || is_done(way);
             });

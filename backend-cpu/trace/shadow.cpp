@@ -14,14 +14,17 @@ namespace shading = ir::shading;
 
 namespace {
 
+enum class Phase { Looking, Crossing, Measuring }; // shading.h, SHADOW
+
 struct State {
+    Phase phase = Phase::Looking;
+    float first = 0;                     // the first mark where something may cover the light
     float s;                             // what is left of the way
     bool mark = false;                   // whether s is one of the marks
     float shadow = shading::closed_from; // the least of `closed` so far
     float quiet = 1e30f;                 // from where on it is looked at again
     int touches = 0;                     // as Walk::touches
     int probes = 0;                      // steps of the touch
-    bool careful = false;                // what is found counts, not what the field says
 };
 
 class Shadows {
@@ -37,9 +40,10 @@ class Shadows {
         std::iota(all.begin(), all.end(), std::size_t{0});
         march(all);
         std::erase_if(all, [&](std::size_t i) {
-            return !(states_[i].shadow > 0 && states_[i].shadow < shading::closed_from);
+            return !(states_[i].phase == Phase::Crossing && states_[i].shadow > 0);
         });
-        for (std::size_t i : all) states_[i] = {.s = rays_[i].reach, .careful = true};
+        for (std::size_t i : all)
+            states_[i] = {.phase = Phase::Measuring, .s = states_[i].first, .mark = true};
         march(all);
         for (std::size_t i = 0; i < rays_.size(); ++i) {
             const float shadow = std::clamp(states_[i].shadow, shading::darkest, 1.0f);
@@ -60,7 +64,8 @@ class Shadows {
             for (std::size_t k = 0; k < active.size(); ++k) {
                 const State &state = states_[active[k]];
                 worker_.points.set(0, k, place(active[k], state.s));
-                worker_.limits[k] = state.shadow * angle_ * state.s;
+                worker_.limits[k] =
+                    state.phase == Phase::Crossing ? 0 : state.shadow * angle_ * state.s;
             }
             distances(worker_, worker_.points, worker_.values.data(), active.size(),
                       worker_.limits.data());
@@ -78,8 +83,9 @@ class Shadows {
             State &state = states_[i];
             const float d = worker_.values[k], light = angle_ * state.s;
             next_[k] = passed(state, d);
-            if (state.touches == 0 && state.shadow > 0 && state.mark && !is_bound(worker_, k) &&
-                d < state.shadow * light && state.s <= state.quiet)
+            if (state.phase != Phase::Crossing && state.touches == 0 && state.shadow > 0 &&
+                state.mark && !is_bound(worker_, k) && d < state.shadow * light &&
+                state.s <= state.quiet)
                 close_.push_back({i, state.s, d});
         }
         look();
@@ -89,7 +95,7 @@ class Shadows {
                 state.s = 0;
                 continue;
             }
-            if (state.touches > 0) {
+            if (state.touches > 0 || state.phase == Phase::Crossing) {
                 state.s -= next_[k];
                 state.mark = false;
                 continue;
@@ -152,8 +158,8 @@ class Shadows {
             state.quiet =
                 close.s - shading::calm * (std::min(near_[j], values_[j]) - state.shadow * light);
             if (!(near_[j] < state.shadow * light)) continue;
-            if (!state.careful) {
-                state.shadow = std::max(near_[j] / light, shading::darkest);
+            if (state.phase == Phase::Looking) {
+                state.phase = Phase::Crossing, state.first = close.s;
                 continue;
             }
             of_.push_back(close.ray);

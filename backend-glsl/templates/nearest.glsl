@@ -66,7 +66,7 @@ $if FILMS
             if (look == $FILM_LOOKS) return $UNSEEN;
         }
         if (look < 0) g = f;
-        if (look < 0 && found && !(g < $FILM_LOWER * before)) return $UNSEEN; // a least value above 0
+        if (look < 0 && found && steps > 1 && !(g < $FILM_LOWER * before)) return $UNSEEN; // a least value above 0
         bool landed = abs(g) < fine * slope;
         if (!found && (landed || steps == $DESCENT_STEPS)) {
 $else
