@@ -30,7 +30,8 @@
 //   else g(p) / max(slope, min_slope), slope^2 = |gradient(p, h)|^2 + crease*((m - g(p))/h)^2, where m is
 //   the mean of g at the gradient's taps. Across a crease of two parts the taps' gradient is the mean
 //   of both, and too small; what it lacks lies across, and lifts m: exactly so where both are as steep,
-//   p is on the crease, and it is along an axis.
+//   p is on the crease, and it is along an axis. Where the arm was longer than what is found is far
+//   (a field may say many times the distance), it is found anew, with shadow_arm times that.
 //
 // MARCH from `begin` to `end`: enhanced sphere tracing (Balint and Valasek 2018; the fallback is
 // that of Keinert et al. 2014). A ray ends in a hit (a change of sign), in a miss (all of its way is
@@ -129,27 +130,31 @@
 //   on where the field says g; `fine` is as near to the surface as p has to come.
 //   off(p) = p - c for a point; for a way p - q - x*l with x = (p - q).l, which counts where x is
 //   on the way; it is measured in lights' sizes there, angle*x.
-//   DOWN to the surface, at most descent_steps times, while |g| >= fine*slope: with v = gradient(p,
-//   max(fine, shadow_arm*|g|)) and the slope of TRUE DISTANCE, by d = -g*v/(slope*|v|). Where that
-//   step leads to where the field is above 0 by the gradient u of the step before, the field is the
-//   greater of two: the shortest d by which both are 0, if the sine between them is at least
-//   sqrt(descent_apart). So the sharp edge of a cut is reached in a few steps. What is not reached
-//   is nowhere.
+//   DOWN to the surface, at most descent_steps times, until |g| < fine*slope: with v = gradient(p,
+//   a) and the slope of TRUE DISTANCE, by d = -g*v/(slope*|v|); a = max(fine, shadow_arm*|g|/slope)
+//   with the slope of the step before, at first 1; an arm that is longer than |g|/slope by its own
+//   slope makes no step, but the next arm. Where d leads to where the field is above 0 by the
+//   gradient u of the step before, the field is the greater of two: the shortest d by which both
+//   are 0, if the sine between them is at least sqrt(descent_apart). So the sharp edge of a cut is
+//   reached in a few steps. The slope is that of the last step where all are 1
+//   (`Frame::unit_slope`), else that at p itself. What is not reached is nowhere.
 //   ALONG the surface, n = v/|v|, from the best place so far, to p + share*((off.n)*n - off), and
 //   down again, with a quarter of the share where that was not better (1 at first, least_share at
-//   least), at most most_slides times: until it was better by `fine` at most, or the way has
-//   fine/2, or |off| - |off.n| is at most `fine`, which is as much as a plane would give; and not
-//   from where |v| is below `steady` times the slope, as on a film.
+//   least), at most most_slides times (for a point occlusion_slides): until it was better by `fine`
+//   at most, or the way has fine/2, or |off| - |off.n| is at most `fine`, which is as much as a
+//   plane would give; and not from where |v| is below `steady` times the slope, as on a film, nor
+//   for a point where |off| is below near_enough times what the first step said. What is beyond the
+//   light, x > reach, is gone back from once along the surface, to x = reach.
 //   FILMS: what is found may be no solid: a film, where the field is 0 (TOUCHES), or a place where
 //     it is least and above 0, as between the face of a plate and the end of the tool that cuts it,
 //     if that ends a little beyond. In a scene that may have some (`Frame::films`) the place that
 //     counts is tried, and is nowhere if it is one: the way goes on down, at most film_steps times,
 //     while g >= near = film_near*thick, thick = slack/4 there; where g does not become less than
-//     film_lower of what it was, but in the first of these steps, it is least there: a film. Where |g| < near, g is looked at
-//     film_looks times on a circle of radius film_look*thick about that place, in the plane of off
-//     and v, which an edge is across (where both are one way, in some plane that holds it). If it
-//     is below -thick at none of them, that is a film (or an edge sharper than an angle between two
-//     looks).
+//     film_lower of what it was, film_stalls times in a row, it is least there: a film. Where |g| <
+//     near, g is looked at film_looks times on a circle of radius film_look*thick about that place,
+//     in the plane of off and v, which an edge is across (where both are one way, in some plane
+//     that holds it). If it is below -thick at none of them, that is a film (or an edge sharper
+//     than an angle between two looks).
 //
 // OCCLUSION (thesis, 4.2.1: five samples along the normal)
 //   for i = 1..5, x_i = reach*i/5 (Lighting's, else Frame's), c_i = p + x_i*n, g_i = g(c_i), w_i =
@@ -170,7 +175,7 @@
 //   closed(s) = near(q + s*l, max(h, shadow_arm*g))/(angle*s): where that is below 1, something covers
 //   the light. The slope is that of as long a way as the value is of, not that of a grain of noise.
 //   Where it is looked at are marks, which no bound moves: the multiples of gap(s) = the greatest
-//   power of 2 that is not above marks*angle*s.
+//   power of 2 that is not above marks*angle*s, and reach.
 //   s = reach (what is left of the way), shadow = closed_from; while s > margin,
 //   margin = shadow_bias*tolerance(t):
 //     the budget is spent: undecided; it counts as what it is so far
@@ -184,8 +189,9 @@
 //     The ball of radius d about s is free; up to s - (d - edge), with the new
 //       edge, nothing in it is nearer than that. s = the greatest of s - d and the first mark that is
 //       before s, not above s - (d - edge) and not above quiet
-//   PENUMBRA, where 0 < shadow < closed_from at the end: closed(s) is as good as the field is near
-//   to a distance. So the way is gone anew, and of a mark where closed(s) < shadow the place of
+//   PENUMBRA: closed(s) is as good as the field is near to a distance. So the first mark where it
+//   is below closed_from is kept, and from there on only what the way crosses is looked for, by
+//   steps of d. If that is nothing, the way is gone anew from that mark on, and the place of
 //   closed(s) is taken by what is NEAREST to the way between margin and reach, from there on, with
 //   fine = max(h, penumbra_fine*angle*s) and the slack at s. So a penumbra depends on the solid
 //   alone, not on what the field is worth as a distance, and another bound makes other steps, but
@@ -229,8 +235,9 @@ inline constexpr float nearly = 0.98f;
 inline constexpr float occlusion_fine = 1.0f / 256; // of the way to a sample, by its weight
 inline constexpr int descent_steps = 8;             // to the surface
 inline constexpr float descent_apart =
-    1.0f / 64;                        // the square of a sine: two faces that are not one
-inline constexpr int most_slides = 6; // along it
+    1.0f / 64; // the square of a sine: two faces that are not one
+inline constexpr int most_slides = 6, occlusion_slides = 1; // along it
+inline constexpr float near_enough = 1.1f;                  // times what the field said first
 inline constexpr float steady =
     0.5f; // of the slope: where a gradient is shorter it has no direction
 inline constexpr float least_share = 1.0f / 20;    // of a slide that is tried
@@ -250,10 +257,11 @@ inline constexpr float across = 1.0f / 32; // the slope behind a touch, from whi
 inline constexpr float probe = 8;          // slack/4: the first step beyond what is touched
 inline constexpr int film_steps = 8;       // to what may be a film
 inline constexpr float film_lower = 0.97f; // of the value before
+inline constexpr int film_stalls = 2;      // steps in a row
 inline constexpr float film_near = 8, film_look = 64; // slack/4
 inline constexpr float film_flat = 1e-6f;       // the square of a sine: two ways that are as one
 inline constexpr int film_looks = 24;           // on a circle,
-inline constexpr float film_turn = 2.87979327f; // so far apart: eleven of them
+inline constexpr float film_turn = 2.87979327f; // so far apart: eleven steps of the circle
 inline constexpr int deep = 2;                  // touches not above 0 that are a solid, one less
 inline constexpr int nearing = 3;               // samples, by which an estimate is hit
 inline constexpr int many_steps = 256;          // red in a picture of steps

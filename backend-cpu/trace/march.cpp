@@ -108,15 +108,28 @@ void slopes(Worker &worker, const Vec *points, const float *g, const float *h, V
     }
 }
 
-void near(Worker &worker, const Vec *points, const float *g, const float *h, float *out,
+void near(Worker &worker, const Vec *points, const float *g, const float *least_arm, float *out,
           std::size_t n) {
     if (worker.stage.frame.unit_slope) {
         std::copy(g, g + n, out);
         return;
     }
-    std::vector<Vec> gradient(n);
-    slopes(worker, points, g, h, gradient.data(), out, n);
-    for (std::size_t k = 0; k < n; ++k) out[k] = g[k] / out[k];
+    std::vector<Vec> at(points, points + n), gradient(n);
+    std::vector<float> value(g, g + n), arm(n), slope(n);
+    for (std::size_t k = 0; k < n; ++k) arm[k] = std::max(least_arm[k], shading::shadow_arm * g[k]);
+    slopes(worker, at.data(), value.data(), arm.data(), gradient.data(), slope.data(), n);
+    std::vector<std::size_t> again;
+    for (std::size_t k = 0; k < n; ++k) {
+        out[k] = g[k] / slope[k];
+        if (!(arm[k] > std::max(least_arm[k], out[k]))) continue;
+        const std::size_t j = again.size();
+        at[j] = points[k], value[j] = g[k];
+        arm[j] = std::max(least_arm[k], shading::shadow_arm * out[k]);
+        again.push_back(k);
+    }
+    slopes(worker, at.data(), value.data(), arm.data(), gradient.data(), slope.data(),
+           again.size());
+    for (std::size_t j = 0; j < again.size(); ++j) out[again[j]] = value[j] / slope[j];
 }
 
 void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,

@@ -23,7 +23,8 @@ struct Descent {
     float ahead = 0; // is this at p
     int steps = 0;
     bool waits = false; // for its value: it has just begun anew
-    bool landed() const { return std::fabs(g) < fine * slope; }
+    bool landed = false;
+    int stalls = 0; // steps in a row that led nowhere below
 };
 
 // What is found for a place.
@@ -34,7 +35,9 @@ struct Best {
     Vec edge{0};     // what a circle round it is across
     Vec along{0};    // the way on from there along the surface
     float share = 1; // of that way
+    float first = 0; // how far off the field said it was at first
     int slides = 0;
+    bool returned = false; // from beyond the light, along the surface
 };
 
 Vec perpendicular(Vec v) {
@@ -50,12 +53,12 @@ class Searches {
         for (std::size_t i = 0; i < places_.size(); ++i)
             ways_.push_back({i, places_[i].at, places_[i].g, places_[i].fine});
         while (!ways_.empty()) {
+            descend();
             std::erase_if(ways_, [&](Descent &way) {
-                const bool ended = way.landed() || way.steps == shading::descent_steps;
+                const bool ended = way.landed || way.steps >= shading::descent_steps;
                 way.waits = ended && slides(way);
                 return ended && !way.waits;
             });
-            descend();
         }
         if (worker_.stage.frame.films) leave_out_films();
         std::vector<float> found(best_.size());
@@ -72,7 +75,17 @@ class Searches {
         const float x = dot(way.p - place.from, place.towards);
         const float size = point ? 1.0f : place.angle * x;
         const Vec off = way.p - place.from - x * place.towards;
-        const bool counts = way.landed() && (point || (x > place.first && x < place.last));
+        if (way.landed && !point && x > place.last && !best.returned) {
+            const Vec n = way.v / std::max(length(way.v), shading::min_slope);
+            const Vec back = place.towards - dot(place.towards, n) * n;
+            best.returned = true;
+            way.p = way.p + (place.last - x) / std::max(dot(back, back), shading::min_slope) * back;
+            way.steps = 0;
+            way.landed = false;
+            return true;
+        }
+        const bool counts =
+            way.landed && (point || (x > place.first && x < place.last + place.fine));
         if (counts && length(off) / size < best.off) {
             const Vec n = way.v / std::max(length(way.v), shading::min_slope);
             const float before = best.off;
@@ -82,14 +95,17 @@ class Searches {
             const float gain = (before - best.off) * size;
             if (length(way.v) < shading::steady * way.slope) return false;
             if (!(std::min(gain, length(off) - std::fabs(dot(off, n))) > place.fine)) return false;
+            if (point && length(off) < shading::near_enough * best.first) return false;
         } else {
             best.share *= 0.25f;
         }
-        if (best.slides == shading::most_slides || best.share < shading::least_share ||
+        if (best.slides == (point ? shading::occlusion_slides : shading::most_slides) ||
+            best.share < shading::least_share ||
             !(best.share * length(best.along) > 0.5f * place.fine))
             return false;
         way.p = best.at + best.share * best.along;
         way.steps = 0;
+        way.landed = false;
         ++best.slides;
         return true;
     }
@@ -101,36 +117,44 @@ class Searches {
             const Descent &way = ways_[k];
             if (way.waits) continue;
             below_.push_back(k), points_.push_back(way.p), g_.push_back(way.g);
-            arms_.push_back(std::max(way.fine, shading::shadow_arm * std::fabs(way.g)));
+            const float away = std::fabs(way.g) / (way.slope > 0 ? way.slope : 1.0f);
+            arms_.push_back(std::max(way.fine, shading::shadow_arm * away));
         }
         const std::size_t n = below_.size();
         gradients_.resize(n), slopes_.resize(n);
         slopes(worker_, points_.data(), g_.data(), arms_.data(), gradients_.data(), slopes_.data(),
                n);
-        for (std::size_t k = 0; k < n; ++k) {
-            Descent &way = ways_[below_[k]];
-            const Vec v = gradients_[k];
-            const Vec by = step(way, v, slopes_[k]);
-            way.v = v, way.slope = slopes_[k], way.ahead = way.g + dot(v, by);
-            way.p = way.p + by;
-            ++way.steps;
-        }
+        for (std::size_t k = 0; k < n; ++k)
+            step(ways_[below_[k]], arms_[k], gradients_[k], slopes_[k]);
         evaluate();
+        if (worker_.stage.frame.unit_slope)
+            for (Descent &way : ways_) way.landed = std::fabs(way.g) < way.fine * way.slope;
     }
 
-    // The step to where the gradient says that the field is 0. Where that is above 0 by the gradient
-    // of the step before, the field is the greater of two, and 0 where both are.
-    static Vec step(const Descent &way, Vec v, float slope) {
-        const Vec by = -way.g / (slope * std::max(length(v), shading::min_slope)) * v;
+    // To where the gradient v says that the field is 0; unless it is there, or the arm was longer than
+    // that is far. Where that is above 0 by the gradient of the step before, the field is the greater
+    // of two, and 0 where both are.
+    void step(Descent &way, float arm, Vec v, float slope) {
         const Vec u = way.v;
+        const bool first = way.steps++ == 0;
+        const float away = std::fabs(way.g) / slope;
+        way.landed =
+            searches_ && !worker_.stage.frame.unit_slope && way.slope > 0 && away < way.fine;
+        if (way.landed) return;
+        way.slope = slope;
+        if (arm > std::max(way.fine, away)) return;
+        if (best_[way.of].first == 0) best_[way.of].first = away;
+        way.v = v;
+        Vec by = -way.g / (slope * std::max(length(v), shading::min_slope)) * v;
         const float vv = dot(v, v), uu = dot(u, u), uv = dot(u, v), det = vv * uu - uv * uv;
-        if (way.steps == 0 || !(way.ahead + dot(u, by) > 0) ||
-            !(det > shading::descent_apart * vv * uu))
-            return by;
-        return ((way.ahead * uv - way.g * uu) * v + (way.g * uv - way.ahead * vv) * u) / det;
+        if (!first && way.ahead + dot(u, by) > 0 && det > shading::descent_apart * vv * uu)
+            by = ((way.ahead * uv - way.g * uu) * v + (way.g * uv - way.ahead * vv) * u) / det;
+        way.ahead = way.g + dot(v, by);
+        way.p = way.p + by;
     }
 
     void leave_out_films() {
+        searches_ = false;
         for (std::size_t i = 0; i < places_.size(); ++i) {
             const Best &best = best_[i];
             if (best.off < places_[i].limit)
@@ -147,10 +171,14 @@ class Searches {
             for (const Descent &way : ways_) before_.push_back(way.g);
             descend();
             std::size_t k = 0;
-            std::erase_if(ways_, [&](const Descent &way) {
-                const bool lower = way.g < shading::film_lower * before_[k++] || way.steps == 1;
-                if (!lower) best_[way.of].off = shading::nowhere; // a least value above 0
-                return !lower || is_done(way);
+            std::erase_if(ways_, [&](Descent &way) {
+                const bool lower = way.g < shading::film_lower * before_[k++];
+                way.stalls = lower ? 0 : way.stalls + 1;
+                if (way.stalls == shading::film_stalls) {
+                    best_[way.of].off = shading::nowhere; // a least value above 0
+                    return true;
+                }
+                return is_done(way);
             });
         }
         ways_ = std::move(there);
@@ -196,6 +224,7 @@ class Searches {
     const std::vector<Near> &places_;
     std::vector<Best> best_; // of each place
     std::vector<Descent> ways_;
+    bool searches_ = true;           // for the surface, and not beyond what is found
     std::vector<std::size_t> below_; // those that step down
     std::vector<Vec> points_, gradients_;
     std::vector<float> g_, arms_, slopes_, before_;

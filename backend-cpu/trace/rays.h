@@ -110,8 +110,9 @@ void gradients(Worker &worker, const Vec *points, const float *h, Vec *out, std:
 // And the slopes there (shading.h, TRUE DISTANCE), where it says g.
 void slopes(Worker &worker, const Vec *points, const float *g, const float *h, Vec *gradient,
             float *out, std::size_t n);
-// The true distances near n points where it says g (shading.h, TRUE DISTANCE).
-void near(Worker &worker, const Vec *points, const float *g, const float *h, float *out,
+// The true distances near n points where it says g (shading.h, TRUE DISTANCE), by gradients of these
+// arms at least.
+void near(Worker &worker, const Vec *points, const float *g, const float *least_arm, float *out,
           std::size_t n);
 
 // A point, or a way to a light, that the solid may be near to (shading.h, NEAREST).

@@ -20,7 +20,7 @@ struct State {
     Phase phase = Phase::Looking;
     float first = 0;                     // the first mark where something may cover the light
     float s;                             // what is left of the way
-    bool mark = false;                   // whether s is one of the marks
+    bool mark = true;                    // whether s is one of the marks
     float shadow = shading::closed_from; // the least of `closed` so far
     float quiet = 1e30f;                 // from where on it is looked at again
     int touches = 0;                     // as Walk::touches
@@ -184,8 +184,6 @@ class Shadows {
             values_[j] = close_[j].d;
         }
         if (worker_.stage.shaded_apart) evaluate_at(points_, values_);
-        for (std::size_t j = 0; j < n; ++j)
-            arms_[j] = std::max(arms_[j], shading::shadow_arm * values_[j]);
         near(worker_, points_.data(), values_.data(), arms_.data(), near_.data(), n);
     }
     void evaluate_at(const std::vector<Vec> &points, std::vector<float> &out) {

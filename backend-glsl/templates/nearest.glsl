@@ -14,16 +14,17 @@ $end
 float fathom_nearest(vec3 from, vec3 l, vec3 p, float g, float first, float last, float angle, float fine,
                      float thick, float limit, inout int looks) {
     bool point = !(angle > 0.0);
-    vec3 v = vec3(0.0), u = v, best = p, along = v; // u: the gradient before, by which the field is `ahead` at p
-    float least = $UNSEEN, share = 1.0, slope = 0.0, bent = -4.0 * g, ahead = 0.0;
+    vec3 v = vec3(0.0), sum = v, best = p, along = v; // v: the gradient of the last step, by which the field is `ahead`
+    float least = $UNSEEN, share = 1.0, slope = 0.0, said = 0.0, bent = -4.0 * g, ahead = 0.0;
     float arm = max(fine, $SHADOW_ARM * abs(g));
     vec3 around = arm * fathom_corner(0);
     int steps = 0, slides = 0, tap = 0; // of a gradient, -1: the field itself
+    bool returned = false;
+    bool found = false; // the place is: is it a film?
 $if FILMS
     vec3 best_v = v, best_way = v;
     float best_g = g, before = g;
-    bool found = false; // the place is: is it a film?
-    int look = -1;      // of the circle round it
+    int stalls = 0, look = -1; // of the circle round it
 $end
     for (int i = $ZERO; i < ($MOST_SLIDES + 1) * (5 * $DESCENT_STEPS + 1) + 5 * $FILM_STEPS + $FILM_LOOKS; ++i) {
         ++looks;
@@ -37,27 +38,34 @@ $end
 $if CACHED
         if (fathom_absent) return $UNSEEN;
 $end
+        bool landed = false;
         if (tap >= 0) {
-            v += f * fathom_corner(tap);
+            sum += f * fathom_corner(tap);
             bent += f;
             ++tap;
             around = arm * fathom_corner(tap & 3);
-            if (tap == 4) {
-                v *= 0.75 / arm;
-                bent *= 0.25 / arm;
-                slope = max(sqrt(dot(v, v) + $CREASE * bent * bent), $MIN_SLOPE);
-                vec3 by = -g / (slope * max(length(v), $MIN_SLOPE)) * v;
-                float vv = dot(v, v), uu = dot(u, u), uv = dot(u, v), det = vv * uu - uv * uv;
-                if (steps > 0 && ahead + dot(u, by) > 0.0 && det > $DESCENT_APART * vv * uu)
-                    by = ((ahead * uv - g * uu) * v + (g * uv - ahead * vv) * u) / det;
+            if (tap < 4) continue;
+            sum *= 0.75 / arm;
+            bent *= 0.25 / arm;
+            float steep = max(sqrt(dot(sum, sum) + $CREASE * bent * bent), $MIN_SLOPE), away = abs(g) / steep;
+$if !UNIT_SLOPE
+            landed = !found && slope > 0.0 && away < fine;
+$end
+            if (!landed) slope = steep;
+            if (!landed && arm <= max(fine, away)) {
+                if (!(said > 0.0)) said = away;
+                vec3 by = -g / (slope * max(length(sum), $MIN_SLOPE)) * sum;
+                float vv = dot(sum, sum), uu = dot(v, v), uv = dot(v, sum), det = vv * uu - uv * uv;
+                if (steps > 0 && ahead + dot(v, by) > 0.0 && det > $DESCENT_APART * vv * uu)
+                    by = ((ahead * uv - g * uu) * sum + (g * uv - ahead * vv) * v) / det;
                 p += by;
+                v = sum;
                 ahead = g + dot(v, by);
-                u = v;
-                ++steps;
-                around = vec3(0.0);
-                tap = -1;
             }
-            continue;
+            ++steps;
+            tap = -1;
+            around = vec3(0.0);
+            if (!landed) continue;
         }
 $if FILMS
         if (look >= 0) {
@@ -65,19 +73,31 @@ $if FILMS
             ++look;
             if (look == $FILM_LOOKS) return $UNSEEN;
         }
-        if (look < 0) g = f;
-        if (look < 0 && found && steps > 1 && !(g < $FILM_LOWER * before)) return $UNSEEN; // a least value above 0
-        bool landed = abs(g) < fine * slope;
-        if (!found && (landed || steps == $DESCENT_STEPS)) {
+        if (look < 0 && !landed) g = f;
+        if (look < 0 && found) {
+            ++stalls;
+            if (g < $FILM_LOWER * before) stalls = 0;
+            if (stalls == $FILM_STALLS) return $UNSEEN; // a least value above 0
+        }
 $else
-        g = f;
-        bool landed = abs(g) < fine * slope;
-        if (landed || steps == $DESCENT_STEPS) {
+        if (!landed) g = f;
 $end
+$if UNIT_SLOPE
+        landed = abs(g) < fine * slope;
+$end
+        if (!found && (landed || steps >= $DESCENT_STEPS)) {
             float x = dot(p - from, l);
             vec3 off = p - from - x * l;
+            if (landed && !point && x > last && !returned) { // beyond the light: back along the surface
+                vec3 n = v / max(length(v), $MIN_SLOPE);
+                vec3 back = l - dot(l, n) * n;
+                p += (last - x) / max(dot(back, back), $MIN_SLOPE) * back;
+                returned = true;
+                steps = 0;
+                continue;
+            }
             float size = point ? 1.0 : angle * x;
-            float offset = landed && (point || x > first && x < last) ? length(off) / size : $UNSEEN;
+            float offset = landed && (point || x > first && x < last + fine) ? length(off) / size : $UNSEEN;
             bool slide = true, nearer = offset < least;
             if (nearer) {
                 vec3 n = v / max(length(v), $MIN_SLOPE);
@@ -90,10 +110,11 @@ $if FILMS
                 best_g = g;
 $end
                 along = dot(off, n) * n - off;
-                slide = length(v) >= $STEADY * slope && min(gain, length(off) - abs(dot(off, n))) > 0.25 * fine;
+                slide = length(v) >= $STEADY * slope && min(gain, length(off) - abs(dot(off, n))) > fine &&
+                        !(point && length(off) < $NEAR_ENOUGH * said);
             }
             if (!nearer) share *= 0.25;
-            slide = slide && slides < $MOST_SLIDES && share >= $LEAST_SHARE && share * length(along) > 0.5 * fine;
+            slide = slide && slides < (point ? $OCCLUSION_SLIDES : $MOST_SLIDES) && share >= $LEAST_SHARE && share * length(along) > 0.5 * fine;
             if (slide) {
                 p = best + share * along;
                 steps = 0;
@@ -107,6 +128,7 @@ $if FILMS
             g = best_g;
             fine = $FILM_NEAR * thick;
             steps = 0;
+            slope = 0.0;
 $else
             return least;
 $end
@@ -115,7 +137,7 @@ $if FILMS
         if (found && look < 0) {
             if (!(g > -fine)) return least;
             if (g < fine) look = 0;
-            if (look < 0 && steps == $FILM_STEPS) return least;
+            if (look < 0 && steps >= $FILM_STEPS) return least;
             before = g;
         }
         if (look >= 0) {
@@ -130,8 +152,8 @@ $if FILMS
         }
 $end
         tap = 0;
-        arm = max(fine, $SHADOW_ARM * abs(g));
-        v = vec3(0.0);
+        arm = max(fine, $SHADOW_ARM * abs(g) / (slope > 0.0 ? slope : 1.0));
+        sum = vec3(0.0);
         bent = -4.0 * g;
         around = arm * fathom_corner(0);
     }

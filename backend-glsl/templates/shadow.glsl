@@ -15,12 +15,13 @@ float fathom_mark(float s, float d, float edge, float quiet, float angle) {
 // How much of a light arrives: marched from the light towards the point (thesis, 4.2.1).
 float fathom_shadow(vec3 q, vec3 l, float reach, float angle, float margin, float h) {
     float s = reach; // what is left of the way
-    bool mark = false; // whether s is one of the marks
+    bool mark = true; // whether s is one of the marks
     float shadow = $CLOSED_FROM; // the least of `closed` so far
     float quiet = 1e30; // from where on marks are looked at again
     int touches = 0; // 1, and how many samples in a row of a touch were not above 0; 0: none
     int probes = 0;   // steps of the touch
-    bool careful = false; // what is found counts, not what the field says
+    int phase = 0;     // 0: looking for what may cover the light, 1: for what it crosses, 2: measuring
+    float first = 0.0; // the first mark where something may
     int turn = $ZERO;
 $if PASSES
     int taken = 0;
@@ -34,9 +35,9 @@ $if PASSES
         }
         shadow = kept.w;
         quiet = fathom_kept(fathom_kept_1).y;
+        phase = int(fathom_kept(fathom_kept_1).z);
+        first = fathom_kept(fathom_kept_1).w;
         taken = int(fathom_kept(fathom_kept_3).y);
-        careful = taken < 0;
-        if (careful) taken = -1 - taken;
         fathom_light_kept = -1;
     }
     int limit = min(fathom_turns - fathom_taken, fathom_budget - taken);
@@ -48,6 +49,7 @@ $end
     vec3 sum = vec3(0.0);
 $if !UNIT_SLOPE
     float arm = h, bent = 0.0; // how far the taps are above the value, all together
+    bool again = false;        // whether the arm is the second
 $end
     while (true) {
         float f = 0.0;
@@ -100,13 +102,13 @@ $# What is touched is passed.
                 }
             }
             next = f;
-            if (mark && s <= quiet && f < shadow * angle * s) {
+            if (phase != 1 && mark && s <= quiet && f < shadow * angle * s) {
                 tap = 0;
                 ahead = false;
                 break;
             }
-            float to = fathom_mark(s, next, shadow * angle * s, quiet, angle);
-            mark = to >= s - next;
+            float to = phase == 1 ? 0.0 : fathom_mark(s, next, shadow * angle * s, quiet, angle);
+            mark = phase != 1 && to >= s - next;
             s = max(s - next, to);
         }
 $if SHADED_APART
@@ -126,17 +128,16 @@ $if PASSES
             if (s > margin && taken + turn < fathom_budget) {
                 fathom_goes_on = true;
                 fathom_keep_0 = vec4(0.0, s, touches > 0 ? float(-touches - 8 * probes) : float(mark), shadow);
-                fathom_keep_1 = vec4(0.0, quiet, 0.0, 0.0);
-                fathom_keep_3.y = float(careful ? -1 - taken - turn : taken + turn);
+                fathom_keep_1 = vec4(0.0, quiet, float(phase), first);
+                fathom_keep_3.y = float(taken + turn);
                 return 1.0;
             }
 $end
             if (s > margin) fathom_shadow_undecided = true;
-            if (careful || s > margin || !(shadow < $CLOSED_FROM)) break;
-            careful = true;
-            s = reach;
-            mark = false;
-            shadow = $CLOSED_FROM;
+            if (phase != 1 || s > margin) break;
+            phase = 2;
+            s = first;
+            mark = true;
             quiet = 1e30;
             touches = 0;
             continue;
@@ -149,6 +150,7 @@ $else
             sum = vec3(0.0);
             bent = -4.0 * value;
             arm = max(h, $SHADOW_ARM * value);
+            again = false;
         }
         if (tap > 0) {
             sum += f * fathom_corner(tap - 1);
@@ -159,27 +161,36 @@ $else
             continue;
         }
         float near = value / max(sqrt(0.5625 * dot(sum, sum) + $CREASE * 0.0625 * bent * bent) / arm, $MIN_SLOPE);
+        if (!again && arm > max(h, near)) { // the arm was longer than what it measured
+            again = true;
+            arm = max(h, $SHADOW_ARM * near);
+            sum = vec3(0.0);
+            bent = -4.0 * value;
+            tap = 1;
+            continue;
+        }
 $end
         quiet = x - $CALM * (min(near, value) - shadow * angle * x);
         if (near < shadow * angle * x) {
-            float off = near / (angle * x);
-            if (careful) {
+            if (phase == 0) first = x;
+            if (phase == 2) {
                 int looks = 0;
-                off = fathom_nearest(q, l, q + x * l, value, margin, reach, angle, max(h, $FINE * angle * x),
+                float off = fathom_nearest(q, l, q + x * l, value, margin, reach, angle, max(h, $FINE * angle * x),
                                      0.25 * fathom_slack_at(x), shadow, looks);
 $if PASSES
                 limit -= looks;
                 fathom_taken += looks;
 $end
-            }
 $if CACHED
-            if (fathom_absent) return 1.0;
+                if (fathom_absent) return 1.0;
 $end
-            shadow = min(shadow, max(off, $DARKEST));
+                shadow = min(shadow, max(off, $DARKEST));
+            }
+            phase = max(phase, 1);
         }
         tap = -1;
-        float to = fathom_mark(s, next, shadow * angle * s, quiet, angle);
-        mark = to >= s - next;
+        float to = phase == 1 ? 0.0 : fathom_mark(s, next, shadow * angle * s, quiet, angle);
+        mark = phase != 1 && to >= s - next;
         s = max(s - next, to);
     }
 $if PASSES

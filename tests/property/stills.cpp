@@ -1,66 +1,13 @@
 // Pictures that were wrong, each by the smallest scene that showed it: what a ray, a shadow or a
 // pixel of such a scene has to be, whatever the bound and the example.
-#include "backend-cpu/trace/march.h"
-#include "base/picture.h"
-#include "driver/compile.h"
+#include "tests/property/stills.h"
 
-#include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
-#include <cmath>
 #include <numeric>
-#include <string>
 #include <utility>
 
 using namespace fathom;
-
-namespace {
-
-constexpr int width = 96, height = 72;
-
-driver::Compilation compiled(const std::string &text) {
-    driver::Compilation compilation = driver::compile_text("still.sdf", text, {}, {});
-    REQUIRE(compilation.good());
-    return compilation;
-}
-
-cpu::Stage stage_of(const ir::Scene &scene) {
-    return cpu::prepare(scene, ir::view_of(scene, 0, static_cast<double>(width) / height), width,
-                        height, 0);
-}
-
-cpu::Picture drawn(const std::string &text, int samples = 1) {
-    const driver::Compilation compilation = compiled(text);
-    const cpu::Stage stage = stage_of(compilation.scene);
-    cpu::PictureOptions options;
-    options.samples = samples;
-    cpu::Picture picture = cpu::render(stage, options);
-    CHECK(picture.work.undecided == 0);
-    return picture;
-}
-
-int byte(const cpu::Picture &picture, int x, int y, int channel) {
-    return picture.rgba[static_cast<std::size_t>(4 * (y * picture.width + x) + channel)];
-}
-
-// Pixels that differ by more than 2 of 255 in some channel.
-int different(const cpu::Picture &a, const cpu::Picture &b) {
-    int count = 0;
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            int most = 0;
-            for (int c = 0; c < 3; ++c)
-                most = std::max(most, std::abs(byte(a, x, y, c) - byte(b, x, y, c)));
-            count += most > 2;
-        }
-    return count;
-}
-
-constexpr int few = width * height / 1000; // a thousandth
-
-const std::string camera = "camera(at: [3, 4, 9], look_at: [0, 0.3, 0], fov: 40deg)\n";
-
-} // namespace
+using namespace fathom::stills;
 
 TEST_CASE("a slider at 0 whose range makes a shape steep draws the shape without it") {
     const std::string from = "camera(at: [0, 4, 26], look_at: [0, 0, 0], fov: 40deg)\n";
@@ -261,76 +208,6 @@ TEST_CASE("the soft shadow on a soft star has no grain") {
     INFO(turns << " turns in " << rows << " rows");
     CHECK(rows > height / 4);
     CHECK(turns < 8 * rows);
-}
-
-TEST_CASE("two texts of one solid give one picture") {
-    const std::string scene = camera + "lighting(ambient_occlusion: 1, soft_shadows: 0.1)\n"
-                                       "sun(direction: [0.6, 0.8, 0.3])\nplane(Y, -1)\n";
-    // What a field of its own finds at edges differs a little.
-    struct Pair {
-        const char *one, *other;
-        int differ = few;
-    };
-    const Pair pairs[] = {
-        {"box(2)",
-         "plane(X, 1) & plane(-X, 1) & plane(Y, 1) & plane(-Y, 1) & plane(Z, 1) & plane(-Z, 1)",
-         few},
-        {"sphere(1)", "implicit(p => length(p) - 1, within: ball(1.05))"},
-        {"ellipsoid([1.2, 0.6, 0.5])",
-         "implicit(p => 0.2 * (dot(p / [1.2, 0.6, 0.5], p / [1.2, 0.6, 0.5]) - 1), "
-         "within: aabb([-1.2, -0.6, -0.5], [1.2, 0.6, 0.5]))"},
-        {"box([0.6, 0.3, 0.6]).rotate(40deg)",
-         "box([0.6, 1, 0.6]).scale([1, 0.3, 1]).rotate(40deg)"},
-        {"cylinder(0.6, 0.18).rotate(30deg, axis: Z)",
-         "cylinder(0.6, 0.6).scale([1, 0.3, 1]).rotate(30deg, axis: Z)"},
-        {"box(1.2)",
-         "implicit(p => max(abs(p.x), max(abs(p.y), abs(p.z))) - 0.6, within: everywhere)"},
-        {"sphere(1)", "implicit(p => length(p) - 1, within: ball(3))"},
-        {"sphere(1)", "implicit(p => 7 * (length(p) - 1), within: ball(2))", 5 * few},
-        {"sphere(1)", "implicit(p => dot(p, p) - 1, within: ball(2))", 2 * few},
-        {"sphere(1)", "sphere(0.5).scale(2)"},
-        {"torus(1, 0.3)", "implicit(p => length([length(p.xz) - 1, p.y]) - 0.3, within: ball(3))"},
-        {"box(1.5) | sphere(1)", "sphere(1) | (box(1.5) & box(9))"},
-        {"box(2) - sphere(1.2)", "box(2) & implicit(p => 1.2 - length(p), within: everywhere)"},
-        {"cylinder(1, 1.5)", "circle(1).extrude(1.5).rotate(90deg, axis: X)"},
-    };
-    for (const auto &[one, other, differ] : pairs) {
-        INFO(one << " and " << other);
-        CHECK(different(drawn(scene + one + "\n"), drawn(scene + other + "\n")) <= differ);
-    }
-}
-
-TEST_CASE("what closes a place is as near as the solid is, not as a field says") {
-    const std::string scene =
-        camera + "lighting(occlusion_reach: 0.4, soft_shadows: 0)\nplane(Y, -0.7)\n";
-    const std::pair<const char *, const char *> pairs[] = {
-        {"box([2, 1.4, 1.4]) - box([2, 1.4, 1.6]).translate([0.3, 0.3, 0])",
-         "box([0.3, 1.4, 1.4]).translate(x: -0.85) | box([2, 0.3, 1.4]).translate(y: -0.55)"},
-        {"box(1.4) - union { for a in [X, Y, Z] { cylinder(0.4, 1.42).orient(Y, a) } }",
-         "box(1.4) - union { for a in [X, Y, Z] { cylinder(0.4, 3).orient(Y, a) } }"},
-        {"box([1.8, 1.2, 1.4]) - box([0.2, 2, 2]).repeat([0.4, 0, 0], count: [4, 1, 1])",
-         "for i in -2..=2 { box([0.2, 1.2, 1.4]).translate(x: 0.4 * i) }"},
-        {"box([2, 1, 0.4]).scale([0.5, 1, 3])", "box([1, 1, 1.2])"},
-    };
-    for (const auto &[cut, whole] : pairs) {
-        INFO(cut);
-        CHECK(different(drawn(scene + cut + "\n"), drawn(scene + whole + "\n")) <= few);
-    }
-}
-
-TEST_CASE("what two parts leave of each other has a soft shadow without stripes") {
-    const auto sliver = [](const std::string &thin, const std::string &thick) {
-        return "camera(at: [3, 2.6, 5], look_at: [0, 0, 0], fov: 40deg)\n"
-               "lighting(soft_shadows: 0.15)\nsun(direction: [0.6, 0.8, 0.3])\nplane(Y, -1.2)\n" +
-               thick + ".translate([-0.553, 0.278, 0.157]) & " + thin +
-               ".rotate(1.557, axis: [0.714, -0.813, 1]).translate([0.238, 0.008, 0.435])\n";
-    };
-    const auto ring = [](const char *radius, const char *tube) {
-        return std::string("implicit(p => length([length(p.xz) - ") + radius + ", p.y]) - " + tube +
-               ")";
-    };
-    CHECK(different(drawn(sliver("torus(0.903, 0.147)", "torus(0.568, 0.299)")),
-                    drawn(sliver(ring("0.903", "0.147"), ring("0.568", "0.299")))) <= 11 * few);
 }
 
 TEST_CASE("a sky without bands: bytes of a gradient average to its values") {

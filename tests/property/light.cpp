@@ -1,0 +1,103 @@
+// How much light arrives is a matter of the solid alone: what the shadows and the occlusion of pictures
+// have to be, whatever text the solid has.
+#include "tests/property/stills.h"
+
+#include <utility>
+
+using namespace fathom;
+using namespace fathom::stills;
+
+TEST_CASE("two texts of one solid give one picture") {
+    const std::string scene = camera + "lighting(ambient_occlusion: 1, soft_shadows: 0.1)\n"
+                                       "sun(direction: [0.6, 0.8, 0.3])\nplane(Y, -1)\n";
+    // What a field of its own finds at edges differs a little.
+    struct Pair {
+        const char *one, *other;
+        int differ = few;
+    };
+    const Pair pairs[] = {
+        {"box(2)",
+         "plane(X, 1) & plane(-X, 1) & plane(Y, 1) & plane(-Y, 1) & plane(Z, 1) & plane(-Z, 1)",
+         few},
+        {"sphere(1)", "implicit(p => length(p) - 1, within: ball(1.05))"},
+        {"ellipsoid([1.2, 0.6, 0.5])",
+         "implicit(p => 0.2 * (dot(p / [1.2, 0.6, 0.5], p / [1.2, 0.6, 0.5]) - 1), "
+         "within: aabb([-1.2, -0.6, -0.5], [1.2, 0.6, 0.5]))"},
+        {"box([0.6, 0.3, 0.6]).rotate(40deg)",
+         "box([0.6, 1, 0.6]).scale([1, 0.3, 1]).rotate(40deg)"},
+        {"cylinder(0.6, 0.18).rotate(30deg, axis: Z)",
+         "cylinder(0.6, 0.6).scale([1, 0.3, 1]).rotate(30deg, axis: Z)"},
+        {"box(1.2)",
+         "implicit(p => max(abs(p.x), max(abs(p.y), abs(p.z))) - 0.6, within: everywhere)"},
+        {"sphere(1)", "implicit(p => length(p) - 1, within: ball(3))"},
+        {"sphere(1)", "implicit(p => 7 * (length(p) - 1), within: ball(2))", 5 * few},
+        {"sphere(1)", "implicit(p => dot(p, p) - 1, within: ball(2))", 2 * few},
+        {"sphere(1)", "sphere(0.5).scale(2)"},
+        {"torus(1, 0.3)", "implicit(p => length([length(p.xz) - 1, p.y]) - 0.3, within: ball(3))"},
+        {"box(1.5) | sphere(1)", "sphere(1) | (box(1.5) & box(9))"},
+        {"box(2) - sphere(1.2)", "box(2) & implicit(p => 1.2 - length(p), within: everywhere)"},
+        {"cylinder(1, 1.5)", "circle(1).extrude(1.5).rotate(90deg, axis: X)"},
+    };
+    for (const auto &[one, other, differ] : pairs) {
+        INFO(one << " and " << other);
+        CHECK(different(drawn(scene + one + "\n"), drawn(scene + other + "\n")) <= differ);
+    }
+}
+
+TEST_CASE("what closes a place is as near as the solid is, not as a field says") {
+    const std::string scene =
+        camera + "lighting(occlusion_reach: 0.4, soft_shadows: 0)\nplane(Y, -0.7)\n";
+    const std::pair<const char *, const char *> pairs[] = {
+        {"box([2, 1.4, 1.4]) - box([2, 1.4, 1.6]).translate([0.3, 0.3, 0])",
+         "box([0.3, 1.4, 1.4]).translate(x: -0.85) | box([2, 0.3, 1.4]).translate(y: -0.55)"},
+        {"box(1.4) - union { for a in [X, Y, Z] { cylinder(0.4, 1.42).orient(Y, a) } }",
+         "box(1.4) - union { for a in [X, Y, Z] { cylinder(0.4, 3).orient(Y, a) } }"},
+        {"box([1.8, 1.2, 1.4]) - box([0.2, 2, 2]).repeat([0.4, 0, 0], count: [4, 1, 1])",
+         "for i in -2..=2 { box([0.2, 1.2, 1.4]).translate(x: 0.4 * i) }"},
+        {"box([2, 1, 0.4]).scale([0.5, 1, 3])", "box([1, 1, 1.2])"},
+    };
+    for (const auto &[cut, whole] : pairs) {
+        INFO(cut);
+        CHECK(different(drawn(scene + cut + "\n"), drawn(scene + whole + "\n")) <= few);
+    }
+}
+
+TEST_CASE("what two parts leave of each other has a soft shadow without stripes") {
+    const auto sliver = [](const std::string &thin, const std::string &thick) {
+        return "camera(at: [3, 2.6, 5], look_at: [0, 0, 0], fov: 40deg)\n"
+               "lighting(soft_shadows: 0.15)\nsun(direction: [0.6, 0.8, 0.3])\nplane(Y, -1.2)\n" +
+               thick + ".translate([-0.553, 0.278, 0.157]) & " + thin +
+               ".rotate(1.557, axis: [0.714, -0.813, 1]).translate([0.238, 0.008, 0.435])\n";
+    };
+    const auto ring = [](const char *radius, const char *tube) {
+        return std::string("implicit(p => length([length(p.xz) - ") + radius + ", p.y]) - " + tube +
+               ")";
+    };
+    CHECK(different(drawn(sliver("torus(0.903, 0.147)", "torus(0.568, 0.299)")),
+                    drawn(sliver(ring("0.903", "0.147"), ring("0.568", "0.299")))) <= 11 * few);
+}
+
+TEST_CASE("the soft shadow of a sharp edge is as that of a blunt one") {
+    const std::string scene = "camera(at: [2, 4.5, 4], look_at: [0.5, -0.8, -0.3], fov: 42deg)\n"
+                              "sun(direction: [-1, 1.2, 0.5])\nplane(Y, -1.1)\n"
+                              "lighting(soft_shadows: 0.1)\n";
+    const cpu::Picture lens =
+        drawn(scene + "sphere(2).translate(y: 1.8734) & sphere(2).translate(y: -1.8734)\n");
+    const cpu::Picture blunt =
+        drawn(scene + "(sphere(2).translate(y: 1.8734) & sphere(2).translate(y: -1.8734)) |"
+                      " torus(0.6995, 0.004)\n");
+    CHECK(different(lens, blunt) <= 5 * few);
+}
+
+// But for the edge of the floor, each byte is near the mean of those above and below it.
+TEST_CASE("a lamp beside a wall lights the floor without rings") {
+    const cpu::Picture lit = drawn("box([6.2, 4.2, 6.2]) - box([6, 4, 6])\n"
+                                   "camera(at: [0, 0.5, 2.9], look_at: [0, -1.6, 0], fov: 30deg)\n"
+                                   "light(at: [0, 1.97, 0], intensity: 0.9)\n");
+    int bent = 0;
+    for (int x = 0; x < width; ++x)
+        for (int y = 1; y < height - 1; ++y)
+            bent += std::abs(2 * byte(lit, x, y, 0) - byte(lit, x, y - 1, 0) -
+                             byte(lit, x, y + 1, 0)) > 4;
+    CHECK(bent <= 2 * width);
+}
