@@ -146,7 +146,13 @@ class Lowering {
     NodeId point3(NodeId p);
     void add_endless(Where frame);
     void add_framed(Where frame); // framing.cpp
-    void find_framed(ShapeId id, Where frame, std::vector<NodeId> &alone);
+    bool has_parts(ShapeId id) const;
+    // Where a part is looked for: what its distance is multiplied by, and what it is cut by; invalid: nothing.
+    struct Framing {
+        Where frame;
+        NodeId factor, cut;
+    };
+    void find_framed(ShapeId id, Framing in, std::vector<NodeId> &alone);
     void find_bounds();
 
     const Shape &shape(ShapeId id) const { return shapes_[id]; }
@@ -170,10 +176,10 @@ class Lowering {
         curved_; // by shape: something in it has a safe radius larger than its distance
     std::vector<char> shaded_apart_; // by shape: its shaded field is not its marched one
     std::vector<char> unit_slope_;   // by shape: the shaded field's slope is 1 almost everywhere
-    std::set<std::pair<ShapeId, NodeId>> framed_seen_; // framing.cpp: shapes and their points
-    std::size_t framed_opened_ = 0;                    // … of those without bounds
-    Parts parts_;                                      // stride 0: nothing is marked
-    std::vector<std::uint32_t> part_;                  // by shape, 0: none of its own
+    std::set<std::tuple<ShapeId, NodeId, NodeId>> framed_seen_; // framing.cpp: shapes, points, cuts
+    std::size_t framed_opened_ = 0;                             // … of those without bounds
+    Parts parts_;                                               // stride 0: nothing is marked
+    std::vector<std::uint32_t> part_;                           // by shape, 0: none of its own
     std::vector<char> colored_;     // by shape: something in it is painted; with parts only
     std::vector<char> parts_below_; // by shape: each of its hits is marked further down
     std::vector<std::string> names_;
