@@ -41,7 +41,8 @@ void Border::enter(Canonical &into, bool moves) {
             into.known[node] = with_component(graph, node, group.component, value);
     };
     if (!moves && enter_turned(into, border)) return;
-    if (auto at = solved(graph, component_of(graph, group.turning, group.component), border))
+    const Turning of = undivided(border);
+    if (auto at = solved(graph, of.number, of.border))
         into.known[at->vector] = with_component(graph, at->vector, at->component, at->value);
     put(group.turning, border);
     for (NodeId step : group.steps)
@@ -50,11 +51,25 @@ void Border::enter(Canonical &into, bool moves) {
                 graph.mul(border, component_of(graph, graph.arg(step, 1), group.component)));
 }
 
+Border::Turning Border::undivided(NodeId border) {
+    Turning out{component_of(graph, group.turning, group.component), border};
+    for (;;) {
+        const Op op = graph[out.number].op;
+        if (op != Op::Div && op != Op::Sub && op != Op::Add) return out;
+        const NodeId of = graph.arg(out.number, 0), by = graph.arg(out.number, 1);
+        const auto number = graph.as_number(by);
+        if (!number || (op == Op::Div && *number == 0)) return out;
+        out = {of, op == Op::Div   ? graph.mul(out.border, by)
+                   : op == Op::Sub ? graph.add(out.border, by)
+                                   : graph.sub(out.border, by)};
+    }
+}
+
 bool Border::enter_turned(Canonical &into, NodeId border) {
     if (group.is_angle) return false;
-    const NodeId turning = component_of(graph, group.turning, group.component);
+    const auto [turning, there] = undivided(border);
     std::optional<NodeId> angle;
-    for (NodeId id : reached_below(graph, turning))
+    for (NodeId id : down_to_angles(graph, turning))
         if (graph[id].op == Op::Atan2) {
             if (angle) return false;
             angle = id;
@@ -62,19 +77,22 @@ bool Border::enter_turned(Canonical &into, NodeId border) {
     const auto linear = angle ? linear_in(graph, turning, *angle) : std::nullopt;
     if (!linear || linear->by == 0 || !graph.is_constant(linear->rest)) return false;
     const NodeId y = graph.arg(*angle, 0), x = graph.arg(*angle, 1);
-    if (graph[y].op != Op::Swizzle || graph[x].op != Op::Swizzle) return false;
-    const NodeId vector = graph.arg(y, 0);
-    if (graph.arg(x, 0) != vector || x == y) return false;
-    const NodeId at = in_one_form(
-        graph, graph.mul(graph.sub(border, linear->rest), graph.number(1 / linear->by)));
+    if (graph.is_constant(y) || graph.is_constant(x) || x == y) return false;
+    const NodeId at =
+        in_one_form(graph, graph.mul(graph.sub(there, linear->rest), graph.number(1 / linear->by)));
     by_angle = true;
-    const auto with = [&](NodeId of, NodeId part, Op op) {
-        return with_component(graph, of, ir::swizzle_component(graph[part].payload, 0),
-                              graph.mul(radius, of_angle(into, op, at)));
-    };
-    into.known[vector] = with(with(vector, x, Op::Cos), y, Op::Sin);
-    into.known[x] = into.scalar(graph.mul(radius, of_angle(into, Op::Cos, at)));
-    into.known[y] = into.scalar(graph.mul(radius, of_angle(into, Op::Sin, at)));
+    const std::array<std::pair<NodeId, Op>, 2> parts{{{x, Op::Cos}, {y, Op::Sin}}};
+    for (const auto &[part, op] : parts) { // the vector that it is of, if any, and itself
+        const NodeId value = graph.mul(radius, of_angle(into, op, at));
+        if (graph[part].op == Op::Swizzle) {
+            const NodeId vector = graph.arg(part, 0);
+            const auto found = into.known.find(vector);
+            into.known[vector] =
+                with_component(graph, found != into.known.end() ? found->second : vector,
+                               ir::swizzle_component(graph[part].payload, 0), value);
+        }
+        into.known[part] = into.scalar(value);
+    }
     into.known[*angle] = at;
     into.known[group.turning] = with_component(graph, group.turning, group.component, border);
     return true;
@@ -85,7 +103,7 @@ NodeId Border::of_angle(Canonical &into, Op op, NodeId angle) {
     return sum ? *sum : graph.make(op, {angle});
 }
 
-std::vector<NodeId> Border::reached_below(const Graph &graph, NodeId root) {
+std::vector<NodeId> Border::down_to_angles(const Graph &graph, NodeId root) {
     std::vector<NodeId> out, todo{root};
     std::unordered_set<NodeId> seen;
     while (!todo.empty() && out.size() < 200) {
@@ -93,6 +111,7 @@ std::vector<NodeId> Border::reached_below(const Graph &graph, NodeId root) {
         todo.pop_back();
         if (!seen.insert(id).second) continue;
         out.push_back(id);
+        if (graph[id].op == Op::Atan2) continue; // what it is of is no part of the sum
         for (NodeId a : graph.args(id)) todo.push_back(a);
     }
     return out;
@@ -207,7 +226,7 @@ NodeId Border::unknown_of(NodeId step, int component, int depth) {
     std::vector<std::uint32_t> key{static_cast<std::uint32_t>(graph[step].op)};
     bool moves = false;
     for (int i = 0; i < int(graph[step].count); ++i) {
-        args.push_back(limit.scalar(part(limit, step, i, component, depth)));
+        args.push_back(limit.under(limit.scalar(part(limit, step, i, component, depth))));
         key.push_back(args.back().index);
         moves = moves || graph.reads(args.back()).point ||
                 reads_little(part(moving, step, i, component, depth));

@@ -51,6 +51,7 @@ struct Canonical {
     NodeId noted(NodeId form, NodeId made); // what it was before it was in one form
     std::optional<NodeId> written_product(NodeId a, NodeId b);
     std::optional<NodeId> turned(Op op, NodeId angle);
+    std::optional<NodeId> turned_by_cut(Op op, NodeId angle);
 
     NodeId of(NodeId id, int depth = 0);
     NodeId step(NodeId id, const ir::Node &node, int depth);
@@ -125,11 +126,18 @@ struct Border {
     // What is known there of coordinates, and of the group's own arguments.
     void enter(Canonical &into, bool moves);
 
+    // What turns, and what it is on the border: of x/m, x and m times that. So m times K is what the
+    // field has, too, where 1/(1/m) is not m.
+    struct Turning {
+        NodeId number, border;
+    };
+    Turning undivided(NodeId border);
+
     // Where an angle of two coordinates turns: these by it and their distance from the axis.
     bool by_angle = false;
     bool enter_turned(Canonical &into, NodeId border);
     NodeId of_angle(Canonical &into, Op op, NodeId angle);
-    static std::vector<NodeId> reached_below(const Graph &graph, NodeId root);
+    static std::vector<NodeId> down_to_angles(const Graph &graph, NodeId root);
 
     bool is_own(NodeId step, int component) const;
 

@@ -1,7 +1,7 @@
 #include "proof/half_waves.h"
 
 #include "ir/passes/walk.h"
-#include "proof/forms.h"
+#include "proof/lattices.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,8 @@ namespace fathom::proof {
 namespace {
 
 using ir::Graph;
+using ir::NodeId;
+using ir::Op;
 
 // What a component becomes where one component of a node is negated, and all else stays.
 enum class Answer : std::uint8_t { Same, Negated, Either, Other };
@@ -115,84 +117,34 @@ bool is_even_in(const Graph &graph, NodeId root, NodeId of) {
     return true;
 }
 
-using Numbers = std::array<double, 4>;
-std::optional<Numbers> numbers(Graph &graph, NodeId id) {
-    Numbers out{};
-    const bool is_splat = graph[id].op == Op::Splat;
-    if (is_splat) id = graph.arg(id, 0);
-    if (!graph.is_constant(id) || ir::is_matrix(graph.type(id))) return {};
-    for (std::size_t i = 0; i < out.size(); ++i)
-        out[i] = graph.constant_of(id).value[is_splat ? 0 : i];
-    return out;
-}
-
-// x as a base and numbers beside it.
-struct Shifted {
-    NodeId base;
-    Numbers by{};
-};
-Shifted shifted(Graph &graph, NodeId x) {
-    constexpr int max_depth = 8;
-    Shifted out{x};
-    for (int depth = 0; depth < max_depth; ++depth) {
-        const Op op = graph[out.base].op;
-        if (op != Op::Add && op != Op::Sub) break;
-        const NodeId a = graph.arg(out.base, 0), b = graph.arg(out.base, 1);
-        const auto right = numbers(graph, b), left = op == Op::Add ? numbers(graph, a) : right;
-        if (!right && !left) break;
-        for (std::size_t i = 0; i < out.by.size(); ++i)
-            out.by[i] += right ? (op == Op::Add ? (*right)[i] : -(*right)[i]) : (*left)[i];
-        out.base = right ? a : b;
-    }
-    return out;
-}
-
-struct Lattice {
-    NodeId node, x, m;
-    Numbers period;
-    Shifted at;
-};
-
-// Is the one half a period, and whole ones, beside the other?
-bool is_half_beside(const Lattice &a, const Lattice &b, int components) {
-    if (a.m != b.m || a.at.base != b.at.base) return false;
-    for (std::size_t i = 0; i < std::size_t(components); ++i) {
-        if (!(a.period[i] > 0)) return false;
-        const double periods = (a.at.by[i] - b.at.by[i]) / a.period[i];
-        if (!(std::fabs(std::fabs(periods - std::round(periods)) - 0.5) <= 1e-12)) return false;
-    }
-    return true;
-}
-
 } // namespace
 
 NodeId with_half_waves(Graph &graph, NodeId root) {
     constexpr std::size_t max_nodes = 1500, max_lattices = 16;
-    constexpr ir::OpSet steps{Op::Mod, Op::Fract, Op::Round};
-    std::vector<NodeId> todo{root}, sums;
+    constexpr ir::OpSet steps{Op::Mod, Op::Fract, Op::Round, Op::Floor, Op::Ceil},
+        made{Op::Add, Op::Sub, Op::Mul};
+    std::vector<NodeId> todo{root}, found, choices;
     std::unordered_set<NodeId> seen;
-    std::size_t stepping = 0;
-    bool chooses = false;
+    int stepping = 0; // numbers
     while (!todo.empty()) {
         const NodeId id = todo.back();
         todo.pop_back();
         if (!seen.insert(id).second) continue;
         if (seen.size() > max_nodes) return root;
         const Op op = graph[id].op;
-        if (op == Op::Add || op == Op::Sub) sums.push_back(id);
-        stepping += steps[op] ? 1 : 0;
-        chooses |= op == Op::Select;
+        if (made[op]) found.push_back(id);
+        stepping += steps[op] ? ir::components(graph.type(id)) : 0;
+        if (op == Op::Select) choices.push_back(id);
         todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
     }
-    if (!chooses || stepping < 2) return root;
+    if (choices.empty() || stepping < 2) return root;
+    for (NodeId choice : choices)
+        if (const auto midway = with_borders_midway(graph, choice))
+            return with_half_waves(graph, ir::substitute(graph, root, {{choice, *midway}}));
     std::vector<Lattice> lattices;
-    for (NodeId id : sums) {
-        const auto found = wave(graph, id);
-        if (!found || lattices.size() >= max_lattices) continue;
-        const auto period = numbers(graph, found->m);
-        if (!period) continue;
-        lattices.push_back({id, found->x, found->m, *period, shifted(graph, found->x)});
-    }
+    for (NodeId id : found)
+        if (auto own = lattice(graph, id); own && lattices.size() < max_lattices)
+            lattices.push_back(std::move(*own));
     for (const Lattice &a : lattices)
         for (const Lattice &b : lattices) {
             const ir::Type type = graph.type(a.node);
@@ -200,9 +152,10 @@ NodeId with_half_waves(Graph &graph, NodeId root) {
                 !is_half_beside(a, b, ir::components(type)) || !is_even_in(graph, root, a.node) ||
                 !is_even_in(graph, root, b.node))
                 continue;
-            const NodeId turns = graph.make(Op::Round, {graph.div(a.x, a.m)});
-            const NodeId size = graph.make(Op::Abs, {graph.sub(a.x, graph.mul(a.m, turns))});
-            const NodeId other = graph.sub(graph.mul(a.m, graph.number(0.5)), size);
+            const NodeId x = place_of(graph, a), m = period_of(graph, a);
+            const NodeId turns = graph.make(Op::Round, {graph.div(x, m)});
+            const NodeId size = graph.make(Op::Abs, {graph.sub(x, graph.mul(m, turns))});
+            const NodeId other = graph.sub(graph.mul(m, graph.number(0.5)), size);
             return with_half_waves(graph,
                                    ir::substitute(graph, root, {{a.node, size}, {b.node, other}}));
         }

@@ -109,6 +109,7 @@ NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
         if (const auto angle = graph.as_number(args[0]); angle && border)
             if (const auto is = of_quarter_turns(node.op == Op::Cos, *angle))
                 return graph.number(*is);
+        if (const auto sum = turned_by_cut(node.op, args[0])) return *sum;
         args[0] = without_iterations(graph, args[0]);
         // where an angle is cut, pi may have few digits
         const double nothing = border && border->group.is_angle ? 1e-9 : 1e-15;
@@ -216,9 +217,10 @@ NodeId Canonical::noted(NodeId form, NodeId made) {
     return form;
 }
 
-// What a root or a size is of.
+// What a root or a size is of, or a step of which nothing is known.
 NodeId Canonical::under(NodeId id) {
-    return border && border->by_angle ? with_round_numbers(graph, id) : id;
+    return border && (border->by_angle || border->group.is_angle) ? with_round_numbers(graph, id)
+                                                                  : id;
 }
 
 std::optional<NodeId> Canonical::written_product(NodeId a, NodeId b) {
@@ -259,6 +261,37 @@ std::optional<NodeId> Canonical::turned(Op op, NodeId angle) {
     const NodeId s = graph.number(std::sin((*sum)[1])), c = graph.number(std::cos((*sum)[1]));
     if (op == Op::Cos) return scalar(graph.sub(graph.mul(cosine, c), graph.mul(sine, s)));
     return scalar(graph.add(graph.mul(sine, c), graph.mul(cosine, s)));
+}
+
+// Where an angle is cut, of an angle and a number by those of the two: a turn by a part of a whole
+// one. Numbers of 44 bits, so that the cosine and the sine of half a right angle are one.
+std::optional<NodeId> Canonical::turned_by_cut(Op op, NodeId angle) {
+    if (!border || !border->group.is_angle) return {};
+    const auto terms = terms_of(graph, angle);
+    if (!terms) return {};
+    double number = 0;
+    NodeId rest = graph.number(0);
+    for (const Term &term : *terms) {
+        if (term.factors.empty()) {
+            number = term.by;
+            continue;
+        }
+        NodeId product = graph.number(term.by);
+        for (NodeId factor : term.factors) product = graph.mul(product, factor);
+        rest = graph.add(rest, product);
+    }
+    if (number == 0 || !(std::fabs(number) < 1e3)) return {};
+    const auto rounded_to_bits = [&](double x) { // pi may have few digits
+        constexpr double grain = 0x1p44, nothing = 1e-9;
+        return graph.number(std::fabs(x) < nothing ? 0 : std::round(x * grain) / grain);
+    };
+    rest = without_iterations(graph, rest);
+    const NodeId s = rounded_to_bits(std::sin(number)), c = rounded_to_bits(std::cos(number));
+    const bool is_cosine = op == Op::Cos;
+    if (graph.as_number(rest)) return is_cosine ? c : s;
+    const NodeId sine = graph.make(Op::Sin, {rest}), cosine = graph.make(Op::Cos, {rest});
+    return scalar(is_cosine ? graph.sub(graph.mul(c, cosine), graph.mul(s, sine))
+                            : graph.add(graph.mul(c, sine), graph.mul(s, cosine)));
 }
 
 // What compares and chooses by K, as far as that is known.

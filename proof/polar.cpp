@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -33,13 +34,28 @@ std::vector<NodeId> all_below(const Graph &graph, NodeId root) {
     return out;
 }
 
+// … down to angles: what these are of is no part of the sum that they stand in.
+std::vector<NodeId> down_to_angles(const Graph &graph, NodeId root) {
+    std::vector<NodeId> out, todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty() && out.size() <= max_nodes_of_angles) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        out.push_back(id);
+        if (graph[id].op == Op::Atan2) continue;
+        for (NodeId a : graph.args(id)) todo.push_back(a);
+    }
+    return out;
+}
+
 struct Angles {
     Graph &graph;
     Turned out;
 
     std::optional<NodeId> angle_in(NodeId scalar) const { // the only one
         std::optional<NodeId> found;
-        for (NodeId id : all_below(graph, scalar))
+        for (NodeId id : down_to_angles(graph, scalar))
             if (graph[id].op == Op::Atan2) {
                 if (found) return {};
                 found = id;
@@ -50,7 +66,7 @@ struct Angles {
     // x % m as x - m*v, in an angle; `floors` says of each v that it is floor(x/m).
     NodeId by_steps(NodeId angle, std::vector<NodeId> &waves, ir::Substitution &floors) {
         ir::Substitution map;
-        for (NodeId id : all_below(graph, angle)) {
+        for (NodeId id : down_to_angles(graph, angle)) {
             const ir::Node node = graph[id];
             if ((node.op != Op::Mod && node.op != Op::Fract) || node.type != ir::Type::Float ||
                 !angle_in(id))
@@ -85,7 +101,7 @@ struct Angles {
         std::vector<NodeId> waves;
         ir::Substitution steps, back; // a step stays the node that it is
         const NodeId stepped = by_steps(angle, waves, back);
-        for (NodeId id : all_below(graph, stepped))
+        for (NodeId id : down_to_angles(graph, stepped))
             if (is_rounding[graph[id].op] && graph[id].type == ir::Type::Float) {
                 const NodeId var = graph.fresh_var(ir::Type::Float);
                 steps[id] = var, back[var] = id;
@@ -93,7 +109,7 @@ struct Angles {
         const auto linear = linear_in(graph, ir::substitute(graph, stepped, steps), *whole);
         if (!linear || std::fabs(linear->by) != 1 || waves.size() > 1) return {};
         const NodeId c = ir::substitute(graph, linear->rest, back);
-        for (NodeId id : all_below(graph, c))
+        for (NodeId id : down_to_angles(graph, c))
             if (graph[id].op == Op::Floor && !waves.empty() && angle_in(id))
                 out.steps.emplace_back(waves[0], id);
         const NodeId cosine = graph.make(Op::Cos, {c}), sine = graph.make(Op::Sin, {c});
@@ -102,6 +118,16 @@ struct Angles {
         const NodeId mirrored = linear->by > 0 ? y : graph.neg(y);
         const NodeId u = graph.make(Op::Make, ir::Type::Vec2, {x, mirrored});
         return graph.make(Op::MatMul, ir::Type::Vec2, {turn, u});
+    }
+
+    // Steps whose arguments are written anew are others: which these are, where only one becomes it.
+    void keep_steps(const std::vector<NodeId> &nodes, const ir::Substitution &map) {
+        constexpr ir::OpSet steps{Op::Floor, Op::Ceil, Op::Round, Op::Fract, Op::Mod, Op::Atan2};
+        std::map<NodeId, std::vector<NodeId>> made;
+        for (NodeId id : nodes)
+            if (steps[graph[id].op]) made[ir::substitute(graph, id, map)].push_back(id);
+        for (const auto &[image, of] : made)
+            if (of.size() == 1 && of[0] != image) out.steps.emplace_back(of[0], image);
     }
 
     // |q| times a cosine, a sine, or the size of a sine.
@@ -148,15 +174,20 @@ struct Angles {
 } // namespace
 
 Turned without_angles(Graph &graph, NodeId root) {
-    const std::vector<NodeId> nodes = all_below(graph, root);
-    const bool any =
-        std::ranges::any_of(nodes, [&](NodeId id) { return graph[id].op == Op::Atan2; });
-    if (!any || nodes.size() > max_nodes_of_angles) return {root, {}};
+    constexpr int most_rounds = 4; // of turned points that angles of others are of
     Angles angles{graph, {root, {}}};
-    ir::Substitution map;
-    for (NodeId id : nodes)
-        if (const auto other = angles.rewritten(id)) map[id] = *other;
-    if (!map.empty()) angles.out.root = ir::substitute(graph, root, map);
+    for (int round = 0; round < most_rounds; ++round) {
+        const std::vector<NodeId> nodes = all_below(graph, angles.out.root);
+        const bool any =
+            std::ranges::any_of(nodes, [&](NodeId id) { return graph[id].op == Op::Atan2; });
+        if (!any || nodes.size() > max_nodes_of_angles) break;
+        ir::Substitution map;
+        for (NodeId id : nodes)
+            if (const auto other = angles.rewritten(id)) map[id] = *other;
+        if (map.empty()) break;
+        angles.keep_steps(nodes, map);
+        angles.out.root = ir::substitute(graph, angles.out.root, map);
+    }
     return std::move(angles.out);
 }
 

@@ -82,6 +82,47 @@ TEST_CASE("two lattices half a period apart are one, by its sizes") {
             }
 }
 
+namespace {
+
+// x - m*(S((x - c)/m) + d) by an op S; the second one's borders lie at `borders`.
+NodeId nearer_by(Hexagons &h, Op step, double d, NodeId borders) {
+    const auto way = [&](NodeId x, double more) {
+        const NodeId count = h.s.call(step, h.g.div(x, h.period));
+        return h.g.sub(h.at, h.g.mul(h.period, h.g.add(count, h.g.number(more))));
+    };
+    h.a = way(h.at, d);
+    h.b = way(h.g.sub(h.at, borders), d + 0.5);
+    return h.nearer();
+}
+
+} // namespace
+
+TEST_CASE("lattices by floor and ceil are one, and with borders aside where that is not seen") {
+    struct Way {
+        Op step;
+        double d, x, y;
+        bool is_one;
+    };
+    for (const Way &way :
+         {Way{Op::Floor, 0.5, 0.5, 0.875, true}, Way{Op::Ceil, -0.5, 0.5, 0.875, true},
+          Way{Op::Floor, 0.5, 0.5, 1, true}, Way{Op::Floor, 0.5, 0.5, 0.7, true},
+          Way{Op::Ceil, -0.5, 0.5, 1, true}, Way{Op::Floor, 0.5, 0.5, 1.2, false},
+          Way{Op::Floor, 0.5, 0.45, 0.875, false}, Way{Op::Floor, 0.45, 0.5, 0.875, false},
+          Way{Op::Round, 0.5, 0.5, 0.875, false}})
+        for (const HexMeasure &measure : even) {
+            Hexagons h(false);
+            const NodeId field = measure(h, nearer_by(h, way.step, way.d, h.vec2(way.x, way.y))),
+                         found = proof::with_half_waves(h.g, field);
+            CAPTURE(int(way.step), way.d, way.x, way.y, &measure - even.data());
+            CHECK((found != field) == way.is_one);
+            for (int k = 0; k < 400; ++k) {
+                const std::array<double, 3> point{0.0371 * k - 7, 0, 0.0533 * k - 9};
+                CHECK(h.value(found, point) ==
+                      Approx(h.value(field, point)).epsilon(1e-9).margin(1e-9));
+            }
+        }
+}
+
 TEST_CASE("lattices stay two where a sign is seen, or where they are not half a period apart") {
     for (const bool by_rounding : {false, true}) {
         for (const HexMeasure &measure : not_even) {
