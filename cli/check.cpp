@@ -21,14 +21,35 @@ std::string_view word_of(v1::Status status) {
     return "";
 }
 
+// Where an assumed bound is not the one that was stated: that one, and what makes it another.
+std::string of_stated(const v1::Scene &scene) {
+    const std::optional<v1::Explanation> root = v1::explain(scene);
+    if (!root) throw std::bad_alloc();
+    std::string steps;
+    const v1::Explanation *at = &*root;
+    for (const v1::Explanation *next = at; next;) {
+        at = next, next = nullptr;
+        for (const v1::Explanation &child : at->children)
+            if (child.steepest) next = &child;
+        if (next && std::abs(at->factor - 1) > 1e-6)
+            steps = fmt::format("; {} makes it {:.4g} times as much: {}", at->operation, at->factor,
+                                at->rule) +
+                    steps;
+    }
+    if (at->rule != "assumed" || steps.empty()) return "";
+    return fmt::format(" ({:.6g} is stated{})", at->lipschitz, steps);
+}
+
 std::string verdict_line(const v1::CompileResult &result, const std::string &file) {
     const v1::Facts &facts = result.scene->facts();
     const bool at_values =
         std::ranges::count(result.diagnostics, "range-unproved", &v1::Diagnostic::code) > 0;
-    return fmt::format("{}: ok, {}{}{}{}", file, word_of(facts.status),
+    const std::string stated =
+        facts.status == v1::Status::Assumed ? of_stated(*result.scene) : std::string();
+    return fmt::format("{}: ok, {}{}{}{}{}", file, word_of(facts.status),
                        at_values ? " at the present values" : "",
                        facts.lipschitz ? fmt::format(", lipschitz {:.6g}", *facts.lipschitz) : "",
-                       facts.exact ? ", exact" : "");
+                       stated, facts.exact ? ", exact" : "");
 }
 
 // A line for an operation: what it is, the bound after it, what it does to its children's, and

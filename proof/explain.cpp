@@ -113,6 +113,9 @@ std::string rule_text(const ir::Scene &scene, ShapeId id, Prover &prover) {
         return opaque(scene, id) ? "stated in the library, beside its proof" : "its body's";
     case ShapeKind::Within: {
         const auto found = scene.cells.find(id);
+        if (!scene.shapes.regions[shape.payload].less.empty() && own_factor(scene, id) > 1.0001)
+            return "the field inside, led on across the region's holes; the distance to the "
+                   "region outside";
         if (found == scene.cells.end())
             return "the field inside, the distance to the region outside";
         const ir::CellBounds &cells = found->second;

@@ -155,3 +155,20 @@ TEST_CASE("a mesh, a measure and a check of one moment are proved for that momen
     CHECK(exit("measure power.sdf --resolution 12 --time 2") == 0);
     CHECK(exit("slice power.sdf --resolution 12 --time 2 --z 0 -o a.svg") == 0);
 }
+
+TEST_CASE("a bound that is not the one that was stated says which is, and what makes it another") {
+    ScratchFolder folder;
+    const std::string field = "fn g(p: vec3) -> float = if p.y > 0 { atan(p.x + 4) } else { pi / 2 "
+                              "- atan(1 / (p.x + 4)) }\n"
+                              "implicit(p => length(p) - 1 + 0.2 * g(p), lipschitz: 1.5, within: ";
+    folder.write("whole.sdf", field + "ball(2))\n");
+    folder.write("holed.sdf", field + "ball(2) - tube(Y, 0.4))\n");
+    folder.write("twisted.sdf", field + "ball(2)).twist(0.5)\n");
+    CHECK(contains(shell(folder, "fathom check whole.sdf").err, "ok, assumed, lipschitz 1.5\n"));
+    const std::string holed = shell(folder, "fathom check holed.sdf").err;
+    CHECK(contains(holed, "ok, assumed, lipschitz 3.17"));
+    CHECK(contains(holed, "(1.5 is stated; within makes it 2.114 times as much: the field inside, "
+                          "led on across the region's holes"));
+    CHECK(
+        contains(shell(folder, "fathom check twisted.sdf").err, "(1.5 is stated; twist makes it "));
+}
