@@ -265,6 +265,7 @@ class Builder {
     std::vector<Edit> names_of_let(Index let);
     bool foreign_count(Index at);
     bool foreign_in(Index at);
+    void changed_parameter(Index word, Index type);
     bool foreign_function_body(Index at);
     bool foreign_instead(Index at, std::string message, const std::string &replacement);
     bool foreign_loop(Index at);
@@ -301,6 +302,14 @@ class Builder {
     std::string lisp_form(Index open) const;
     bool lisp_binding(Index open);
     bool lisp_call(Index at);
+    bool lisp_let(Index open);
+    bool asks_for_type(Index at);
+    bool list_spread(Index at);
+    bool counted_block(Index first, Index at);
+    bool range_in_parentheses(Index at);
+    bool foreign_for_words(Index at);
+    bool python_import(Index first);
+    bool of_other_program(Index first);
     bool joined_by_space(Index at, bool list);
     bool call_of_row(Index open);
     bool pipe_edits(Index sign, std::vector<Edit> &edits) const;

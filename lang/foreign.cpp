@@ -316,10 +316,13 @@ bool Builder::shape_behind_call(Index first, Index at) {
 
 bool Builder::foreign_junk(Index first, Index at) {
     const Tok found = kind(at);
+    const std::string name(text(first));
     if (kind(first) == Tok::Name && at == first + 1 && mistyped_keyword(first)) return true;
     if (kind(first) == Tok::Name && kind(first + 1) == Tok::Name && foreign_head(first))
         return true;
     if (found == Tok::Name && juxtaposed_calls(first, at)) return true;
+    if (counted_block(first, at)) return true;
+    if (is_declared(name) && foreign_word_operator(at)) return true; // `a union b`
     if (remark(first, at) || where_clause(first, at) || shape_behind_call(first, at)) return true;
     if (foreign_word_operator(at) || foreign_scope(at)) return true;
     const bool after_loop =
@@ -364,7 +367,6 @@ bool Builder::foreign_junk(Index first, Index at) {
     }
     if (found == Tok::String && kind(at - 1) == Tok::Name && token(at - 1).end == token(at).begin)
         return joined_by_space(at, false);
-    const std::string name(text(first));
     const bool all = name == "assert" || name == "print" || name == "echo"; // `assert 1 < 2`
     const bool value =
         is_one_of(found, {Tok::Number, Tok::String, Tok::Color, Tok::Name, Tok::True, Tok::False});
@@ -400,10 +402,13 @@ bool Builder::junk_by_sign(Index first, Index at) {
                   {{{id_, token(first).begin, token(first).begin}, "fn "}, {span(at), "="}});
         return true;
     }
-    if (found == Tok::Assign && kind(first) == Tok::Let && at == first + 4 &&
-        kind(at - 1) == Tok::Name && !token(at).first_on_line) { // `let a = b = 1`
+    const Index bound = kind(first) == Tok::Let ? first + 1 : first;
+    if (found == Tok::Assign && kind(bound) == Tok::Name && kind(bound + 1) == Tok::Assign &&
+        at == bound + 3 && kind(at - 1) == Tok::Name &&
+        !token(at).first_on_line) { // `let a = b = 1`, `a = b = 1`
         const Index end = statement_end(first);
-        const std::string a(text(first + 1)), b(text(at - 1)),
+        diagnostics_.withdraw(Code::ForeignSyntax, span(bound));
+        const std::string a(text(bound)), b(text(at - 1)),
             value(text(token(at).end, token(end - 1).end));
         lost_.push_back(at - 1);
         foreign(span(first, at), "each name is bound by a `let` of its own")

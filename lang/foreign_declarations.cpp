@@ -400,6 +400,7 @@ bool Builder::foreign_binding(Index at) {
             .help("write " + in_code("param " + name + " = 1 in 0..2"));
         return true;
     }
+    if (range_in_parentheses(at)) return true;
     if (found == Tok::Open && kind(at - 2) == Tok::Let) {
         foreign(span(at - 2), "a function is declared with `fn`")
             .help("write `fn`", {{span(at - 2), "fn"}});

@@ -2,6 +2,7 @@
 #include "lang/builder.h"
 
 #include <algorithm>
+#include <array>
 
 namespace fathom::lang {
 
@@ -28,6 +29,10 @@ bool Builder::foreign_operand(Wanted wanted, Index at) {
         return true;
     }
     if (found == Tok::For && kind(before) == Tok::ListOpen && call_of_row(before)) return true;
+    if (found == Tok::Let && is_one_of(kind(before), {Tok::Open, Tok::FreshOpen}) &&
+        lisp_let(before))
+        return true;
+    if (list_spread(at)) return true;
     if (found == Tok::Let && kind(before) == Tok::If) {
         foreign(span(before, at), "a condition binds no name: every name has a value")
             .help("bind it before: `let x = …`, and then `if x > 0 { … }`");
@@ -134,9 +139,27 @@ bool Builder::foreign_group(Index at, bool list) {
     if (foreign_word_operator(at) || foreign_comparison(at) || foreign_scope(at)) return true;
     const Index open = enclosing(at);
     const bool head = open >= 2 && kind(open - 2) == Tok::Fn;
+    if (head && found == Tok::In && kind(at + 1) == Tok::Name && kind(at + 2) == Tok::Name) {
+        changed_parameter(at, at + 1); // `in vec3 p`
+        return true;
+    }
+    if ((head || kind(open) == Tok::LambdaOpen) && found == Tok::Name &&
+        kind(before) == Tok::Name && kind(at + 1) == Tok::Name && !is_type_word(text(before))) {
+        changed_parameter(before, at); // `inout vec3 p`
+        return true;
+    }
     if ((head || kind(open) == Tok::LambdaOpen) && found == Tok::Name &&
         kind(before) == Tok::Name && !token(at).first_on_line) {
         const bool swapped = is_type_word(text(at));
+        const bool typed = swapped || is_type_word(text(before)) ||
+                           type_named(text(before)) != TypeName::Unknown ||
+                           (text(before)[0] >= 'A' && text(before)[0] <= 'Z');
+        if (!typed) { // `fn leg(x z)`
+            const std::uint32_t end = token(before).end;
+            diagnostics_.add(Code::SyntaxError, span(at), "parameters are parted by commas")
+                .help("write `,`", {{{id_, end, end}, ","}});
+            return true;
+        }
         const std::string name(text(swapped ? before : at)), type(text(swapped ? at : before));
         foreign(span(before, at), "a parameter's type stands behind its name, after a `:`")
             .help("write " + in_code(name + ": " + type), {{span(before, at), name + ": " + type}});
@@ -158,6 +181,7 @@ bool Builder::foreign_group(Index at, bool list) {
             d.help("write `[for … { … }]` for a list, `union { for … { … } }` for a shape");
         return true;
     }
+    if (list && list_spread(at)) return true;
     if (found == Tok::DotDot && text(at) == "...") {
         foreign(span(at), "a list is not spread out").help("lists are joined by `concat(a, b)`");
         return true;
@@ -219,6 +243,18 @@ std::vector<Edit> Builder::names_of_let(Index let) {
     }
     if (let_until_ <= let) edits.resize(1);
     return edits;
+}
+
+// `inout vec3 p`, `const float r`, at the word and at the type: a parameter is given, and never changed.
+void Builder::changed_parameter(Index word, Index type) {
+    const bool known = type_named(text(type)) != TypeName::Unknown;
+    const std::string name(text(type + 1)),
+        ours = name + (known ? ": " + std::string(text(type)) : "");
+    Diagnostic &d =
+        foreign(span(word, type + 1), "a parameter's type stands behind its name, after a `:`");
+    if (text(word) == "inout" || text(word) == "out")
+        d.note("a function changes none of its arguments: it returns what is new");
+    d.help("write " + in_code(ours), {{span(word, type + 1), ours}});
 }
 
 // Where a declaration's name should stand.
@@ -298,7 +334,7 @@ bool Builder::foreign_in(Index at) {
         d.help("write " + in_code("for " + head + " { … }"), {{span(name, brace - 1), head}});
         return true;
     }
-    if (found == Tok::Assign && foreign_count(at)) return true;
+    if ((found == Tok::Assign && foreign_count(at)) || foreign_for_words(at)) return true;
     if (found == Tok::Assign)
         return foreign_instead(at, "a loop runs over what stands behind `in`", "in");
     if (found == Tok::Name && text(at) == "of")
@@ -356,7 +392,19 @@ bool Builder::foreign_function_body(Index at) {
     return false;
 }
 
+// `typeof x == "number"`, behind the word.
+bool Builder::asks_for_type(Index at) {
+    constexpr std::array<std::string_view, 3> words = {"typeof", "sizeof", "type"};
+    if (at == 0 || kind(at - 1) != Tok::Name || !is_one_of(text(at - 1), words) ||
+        kind(at) != Tok::Name || token(at).first_on_line || may_be_declared(text(at - 1)))
+        return false;
+    foreign(span(at - 1), "every name has one type, which nobody asks for")
+        .help("leave the question away");
+    return true;
+}
+
 bool Builder::foreign_failure(Wanted wanted, Index at) {
+    if (asks_for_type(at)) return true;
     switch (wanted) {
     case Wanted::Statement:
     case Wanted::Expression: return foreign_operand(wanted, at);

@@ -122,7 +122,8 @@ class Forms : WordChanges {
 
     // `&T`, `&x`, `&mut x`, where no operator can stand.
     bool by_reference(std::size_t &i) {
-        if (kind(i) != Tok::Amp || words_[i].first_on_line || kind(i + 1) != Tok::Name ||
+        if (kind(i) != Tok::Amp || words_[i].first_on_line ||
+            !is_one_of(kind(i + 1), {Tok::Name, Tok::ListOpen}) ||
             !is_one_of(before(i), {Tok::Colon, Tok::Arrow, Tok::In, Tok::Open, Tok::ListOpen,
                                    Tok::Comma, Tok::Assign, Tok::Return}))
             return false;
@@ -347,6 +348,8 @@ class Forms : WordChanges {
         }
         const bool braces =
             item > 0 && name > 0 && is_one_of(kind(past), {Tok::Body, Tok::Trailing});
+        if (item > 0 && kind(name) == Tok::Name && (kind(past) == Tok::End || fresh(past)))
+            return without_values(i, name);
         if (name == 0 || kind(name) != Tok::Name || (kind(past) != Tok::Assign && !braces) ||
             words_[past].first_on_line)
             return false;
@@ -370,6 +373,21 @@ class Forms : WordChanges {
         }
         i = past - 1;
         array_ = kind(past + 1) == Tok::Body;
+        return true;
+    }
+
+    // `std::vector<float> r;`
+    bool without_values(std::size_t &i, std::size_t name) {
+        const Span head = words(i, name);
+        const std::string let = "let " + std::string(text(name)) + " = []";
+        say(head, "a name is bound together with its value")
+            .help("write " + in_code(let), {{head, let}});
+        begin_change(i);
+        put(Tok::Let, words_[i].begin, words_[i].begin, words_[i].first_on_line);
+        out_.push_back(words_[name]);
+        const std::uint32_t end = words_[name].end;
+        for (const Tok sign : {Tok::Assign, Tok::ListOpen, Tok::ListClose}) put(sign, end, end);
+        i = name;
         return true;
     }
 

@@ -13,6 +13,8 @@ constexpr std::array<std::string_view, 14> changes_of_shapes = {
     "translate", "rotate", "scale", "mirror", "paint", "offset",  "shell",
     "twist",     "repeat", "move",  "color",  "bend",  "reflect", "displace"};
 
+bool spreads(std::string_view word) { return word == "*" || word == "..." || word == "each"; }
+
 } // namespace
 
 std::string joined_string(std::string_view quoted, std::string_view opening) {
@@ -41,6 +43,38 @@ std::string joined_string(std::string_view quoted, std::string_view opening) {
         if (at == inside.size()) break;
     }
     return any ? sum : std::string();
+}
+
+// `[*a, 3]`, `[...a, 3]`, `[each a, 3]`, at the sign: `concat(a, [3])`.
+bool Builder::list_spread(Index at) {
+    const Index open = enclosing(at), close = match(open);
+    if (!spreads(text(at)) || !is_one_of(kind(open), {Tok::ListOpen, Tok::FreshListOpen}) ||
+        (at != open + 1 && kind(at - 1) != Tok::Comma))
+        return false;
+    std::vector<std::string> lists;
+    bool row = false; // the last one is of single values
+    for (Index first = open + 1, i = first; i <= close; i = match(i) > i ? match(i) + 1 : i + 1) {
+        if (i < close && kind(i) != Tok::Comma) continue;
+        const bool whole = spreads(text(first));
+        const Index begin = whole ? first + 1 : first;
+        if (begin >= i) return false;
+        const std::string part(text(token(begin).begin, token(i - 1).end));
+        if (whole)
+            lists.push_back(part);
+        else if (row)
+            lists.back().insert(lists.back().size() - 1, ", " + part);
+        else
+            lists.push_back("[" + part + "]");
+        row = !whole;
+        first = i + 1;
+    }
+    std::string joined = lists[0];
+    for (std::size_t k = 1; k < lists.size(); ++k) joined += ", " + lists[k];
+    if (lists.size() > 1) joined = "concat(" + joined + ")";
+    failed_ = close;
+    foreign(span(at), "a list is not spread out: lists are joined by `concat`")
+        .help("write " + in_code(joined), {{span(open, close), joined}});
+    return true;
 }
 
 // `enum Kind { BALL, CUBE }`: each is a number.
@@ -210,8 +244,9 @@ std::string Builder::nested_loops(Index open, Index at) const {
 bool Builder::applied_without_dot(Index at) {
     const Index name = kind(at) == Tok::Comma ? at + 1 : at;
     if (at == 0 || kind(name) != Tok::Name || kind(name + 1) != Tok::Open ||
-        kind(at - 1) != Tok::Close || token(name).first_on_line ||
-        !is_one_of(text(name), changes_of_shapes))
+        !(kind(at - 1) == Tok::Close ||
+          (kind(at - 1) == Tok::Name && is_declared(std::string(text(at - 1))))) ||
+        token(name).first_on_line || !is_one_of(text(name), changes_of_shapes))
         return false;
     const std::string call = "." + std::string(text(name)) + "(…)";
     foreign(span(at), "a function is applied by a dot")

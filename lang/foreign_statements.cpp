@@ -196,4 +196,96 @@ bool Builder::words_of_range(Index first, Index at) {
     return true;
 }
 
+// `param r(0, 2) = 1`, `param r(1, 0, 2)`, at the parenthesis: two numbers as a range.
+bool Builder::range_in_parentheses(Index at) {
+    if (at < 2 || kind(at) != Tok::Open || kind(at - 2) != Tok::Param) return false;
+    const Index close = match(at), end = statement_end(at - 2);
+    std::vector<std::string> numbers;
+    for (Index i = at + 1; i < close; ++i)
+        if (kind(i) == Tok::Number)
+            numbers.push_back((kind(i - 1) == Tok::Minus ? "-" : "") + std::string(text(i)));
+    const bool valued = kind(close + 1) == Tok::Assign;
+    const std::string name(text(at - 1));
+    lost_.push_back(at - 1);
+    Diagnostic &d = foreign(span(at, close), "a param's range stands behind `in`");
+    const std::size_t ends = valued ? 2 : 3; // else the value is the first
+    if (numbers.size() != ends) {
+        d.help("write " + in_code("param " + name + " = 1 in 0..2"));
+        return true;
+    }
+    const std::string range = " in " + numbers[ends - 2] + ".." + numbers[ends - 1];
+    const std::string value = valued ? " = …" : " = " + numbers[0];
+    failed_ = end;
+    if (valued)
+        d.help("write " + in_code("param " + name + value + range),
+               {{span(at, close), ""}, {{id_, token(end - 1).end, token(end - 1).end}, range}});
+    else
+        d.help("write " + in_code("param " + name + value + range),
+               {{span(at, close), value + range}});
+    return true;
+}
+
+// `for i from 0 to 5 { … }`, `for each x in list { … }`, behind the variable.
+bool Builder::foreign_for_words(Index at) {
+    const std::string_view variable = text(at - 1);
+    if ((variable == "each" || variable == "every") && kind(at) == Tok::Name &&
+        kind(at + 1) == Tok::In) {
+        foreign(span(at - 1), "a loop is written `for x in list { … }`")
+            .help("leave " + in_code(variable) + " away",
+                  {{{id_, token(at - 1).begin, token(at).begin}, ""}});
+        return true;
+    }
+    if (kind(at) != Tok::Name || (text(at) != "from" && text(at) != "of")) return false;
+    std::vector<Edit> edits{{span(at), "in"}};
+    Index i = at + 1;
+    for (; !ends_statement(i) && kind(i) != Tok::Body; i = match(i) > i ? match(i) + 1 : i + 1) {
+        if (kind(i) != Tok::Name || kind(i - 1) == Tok::Dot) continue;
+        const std::string_view word = text(i);
+        if (word == "to" || word == "through" || word == "upto") edits.push_back({span(i), "..="});
+        if (word == "until" || word == "below") edits.push_back({span(i), ".."});
+    }
+    failed_ = i;
+    foreign(span(at), "a loop runs over what stands behind `in`")
+        .help("write `for i in 0..8 { … }`", std::move(edits));
+    return true;
+}
+
+// `repeat 5 times { … }`, `repeat n { … }`, `loop 5 { … }`, `5 times { … }`: a loop that counts.
+bool Builder::counted_block(Index first, Index at) {
+    const bool word = text(first) == "repeat" || text(first) == "loop" || text(first) == "do";
+    Index count = word ? first + 1 : first;
+    if (!is_one_of(kind(count), {Tok::Number, Tok::Name}) || at < count) return false;
+    const bool times = text(count + 1) == "times";
+    const Index brace = count + (times ? 2 : 1);
+    if ((!word && !times) || token(count).first_on_line != !word ||
+        !is_one_of(kind(brace), {Tok::Body, Tok::Trailing, Tok::StrayBrace}))
+        return false;
+    const std::string head = "for i in 0.." + std::string(text(count));
+    failed_ = match(brace) > brace ? match(brace) : brace;
+    foreign(span(first, brace - 1), "a loop is written `for i in 0..8 { … }`")
+        .help("write " + in_code(head + " { … }"), {{span(first, brace - 1), head}});
+    return true;
+}
+
+// Python's `from parts.arch import arch`: a file of the user's own, by its path.
+bool Builder::python_import(Index first) {
+    Index end = first + 1;
+    while (is_one_of(kind(end), {Tok::Name, Tok::Dot})) ++end;
+    if (text(first) != "from" || kind(end) != Tok::Import || end == first + 1) return false;
+    const Index begin = kind(first + 1) == Tok::Dot ? first + 2 : first + 1;
+    std::string path;
+    for (Index i = begin; i < end; ++i) path += kind(i) == Tok::Dot ? "/" : text(i);
+    constexpr std::array<std::string_view, 16> libraries = {
+        "math",      "numpy",     "random",    "bpy",     "mathutils",   "fathom",
+        "sdf",       "scipy",     "typing",    "solid",   "dataclasses", "enum",
+        "functools", "itertools", "build123d", "cadquery"};
+    if (path.empty() || is_one_of(text(begin), libraries)) return false;
+    const std::string written = "import \"" + path + ".sdf\"";
+    failed_ = end;
+    const Index past = statement_end(first);
+    foreign(span(first), "`import` brings all names of a file")
+        .help("write " + in_code(written), {{span(first, past - 1), written}});
+    return true;
+}
+
 } // namespace fathom::lang

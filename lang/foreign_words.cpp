@@ -61,9 +61,23 @@ constexpr ForeignWord statement_words[] = {
     {"match", "a choice is written with `if`", "write `if a { … } else if b { … } else { … }`"},
     {"do", "a loop begins with its condition", "write `while condition limit n { … }`"}};
 
+// What scripts of other programs begin with.
+constexpr std::array<std::string_view, 4> modules = {"bpy", "bmesh", "THREE", "cq"};
+
 } // namespace
 
 // -- statements ----------------------------------------------------------------------------------
+
+// `bpy.ops.mesh.primitive_cube_add(size=2)`: of all of it only that is told.
+bool Builder::of_other_program(Index first) {
+    if (kind(first + 1) != Tok::Dot || !is_one_of(text(first), modules) ||
+        may_be_declared(text(first)))
+        return false;
+    failed_ = statement_end(first);
+    foreign(span(first), "there is no " + in_code(text(first)) + " here")
+        .help("a shape is made by a call, as `sphere(1)`, and moved by `.translate(z: 1)`");
+    return true;
+}
 
 bool Builder::foreign_statement(Index first) {
     const auto begins_record = [&](Index i) {
@@ -138,7 +152,8 @@ bool Builder::foreign_statement(Index first) {
                   {{{id_, token(first).begin, token(first + 2).begin}, ""}});
         return true;
     }
-    if (curv_block(first) || print_stream(first)) return true;
+    if (curv_block(first) || print_stream(first) || python_import(first) || of_other_program(first))
+        return true;
     const auto *row = std::ranges::find(statement_words, text(first), &ForeignWord::word);
     if (row == std::end(statement_words) || is_declared(std::string(text(first)))) return false;
     const Tok next = kind(first + 1);

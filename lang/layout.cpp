@@ -412,7 +412,8 @@ Tokens lay_out(const Source &source, SourceId id, const Words &words, Diagnostic
     const auto latest = [&]() -> const std::vector<Token> & {
         return ours.tokens.empty() ? words.tokens : ours.tokens;
     };
-    for (const auto pass : {read_foreign_forms, read_foreign_matches, read_foreign_lambdas})
+    for (const auto pass :
+         {read_foreign_casts, read_foreign_forms, read_foreign_matches, read_foreign_lambdas})
         if (std::vector<Token> changed = pass(source, id, latest(), diagnostics); !changed.empty())
             ours.tokens = std::move(changed);
     return Layout(source, id, ours.tokens.empty() ? words : ours, diagnostics).run();

@@ -108,30 +108,6 @@ Diagnostic &Lexer::foreign(std::uint32_t begin, std::uint32_t end, std::string m
         .help(std::move(help), {{span(begin, end), std::move(replacement)}});
 }
 
-void Lexer::line_comment(std::uint32_t begin, std::uint32_t end) {
-    if (end > begin && source_.text[end - 1] == '\r') --end;
-    words_.comments.push_back({begin, end, true});
-    turned_text(begin, end);
-    // Python's `a //= 2`: a comment would swallow it in silence.
-    const std::string_view text = slice(begin, end);
-    const bool after_name = !fresh_line_ && words_.tokens.back().kind == Tok::Name;
-    if (after_name && text.starts_with("//= ") && text.size() > 4)
-        report(Code::ForeignSyntax, begin, begin + 3, "`//` begins a comment")
-            .help("whole division is `a = div(a, b)`");
-}
-
-void Lexer::block_comment(std::uint32_t begin, std::uint32_t end) {
-    words_.comments.push_back({begin, end, false});
-    turned_text(begin, end);
-    if (slice(begin, end).find('\n') != std::string_view::npos) fresh_line_ = true;
-}
-
-void Lexer::unclosed_comment(std::uint32_t begin, std::uint32_t end) {
-    words_.comments.push_back({begin, end, false});
-    report(Code::UnclosedBracket, begin, begin + 2, "this comment is never closed")
-        .help("close it with `*/`; comments do not nest");
-}
-
 void Lexer::word(std::uint32_t begin, std::uint32_t end) {
     const std::string_view text = slice(begin, end);
     Tok kind = Tok::Name;
@@ -428,6 +404,11 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
         is_one_of(words_.tokens.back().kind, {Tok::Name, Tok::Close, Tok::ListClose})) {
         add(Tok::Star, begin, end);
         foreign(begin, end, "a product of matrices and vectors is written `*`", "*");
+        return;
+    }
+    if (text == "$t") { // OpenSCAD's
+        add(Tok::Bad, begin, end);
+        foreign(begin, end, "the seconds are `time`", "time");
         return;
     }
     if (text[0] == '$' && text.size() > 1 && !is_special(text.substr(1))) {

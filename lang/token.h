@@ -128,6 +128,9 @@ std::vector<Token> read_foreign_forms(const Source &source, SourceId id,
                                       const std::vector<Token> &words, Diagnostics &diagnostics);
 std::vector<Token> read_foreign_matches(const Source &source, SourceId id,
                                         const std::vector<Token> &words, Diagnostics &diagnostics);
+// Casts and calls that name a type (foreign_casts.cpp).
+std::vector<Token> read_foreign_casts(const Source &source, SourceId id,
+                                      const std::vector<Token> &words, Diagnostics &diagnostics);
 bool is_foreign_transform(std::string_view name); // what OpenSCAD writes before a shape
 // Settles where statements end, and reports what cannot be a word.
 Tokens lay_out(const Source &source, SourceId id, const Words &words, Diagnostics &diagnostics);

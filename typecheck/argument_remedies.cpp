@@ -33,84 +33,55 @@ Span with_comma(std::span<const Argument> args, std::size_t at, Span callee) {
 
 namespace {
 
-constexpr std::pair<std::string_view, std::string_view> argument_names[] = {
-    {"color", "diffuse"},
-    {"colour", "diffuse"},
-    {"albedo", "diffuse"},
-    {"ambient", "diffuse"},
-    {"shininess", "exponent"},
-    {"emissive", "emission"},
-    {"position", "at"},
-    {"pos", "at"},
-    {"center", "at"},
-    {"eye", "at"},
-    {"target", "look_at"},
-    {"lookat", "look_at"},
-    {"dir", "direction"},
-    {"h", "height"},
-    {"r", "radius"},
-    {"r1", "major"},
-    {"r2", "minor"},
-    {"R", "major"},
-    {"r", "minor"},
-    {"r1", "bottom"},
-    {"r2", "top"},
-    {"bottom_radius", "bottom"},
-    {"top_radius", "top"},
-    {"radius1", "major"},
-    {"radius2", "minor"},
-    {"radius", "r"},
-    {"radius", "k"},
-    {"r", "k"},
-    {"amount", "r"},
-    {"distance", "r"},
-    {"n", "sides"},
-    {"n", "count"},
-    {"count", "n"},
-    {"factor", "by"},
-    {"v", "axis"},
-    {"v", "by"},
-    {"vector", "by"},
-    {"a", "angle"},
-    {"degrees", "angle"},
-    {"faces", "sides"},
-    {"width", "size"},
-    {"dimensions", "size"},
-    {"thick", "thickness"},
-    {"width", "thickness"},
-    {"step", "cell"},
-    {"spacing", "cell"},
-    {"period", "cell"},
-    {"size", "cell"},
-    {"material", "material"},
-    {"normal", "axis"},
-    {"rounding", "radius"},
-    {"round_radius", "radius"},
-    {"length", "height"},
-    {"roundRadius", "radius"},
-    {"location", "at"},
-    {"energy", "intensity"},
-    {"strength", "intensity"},
-    {"brightness", "intensity"},
-    {"base_color", "diffuse"},
-    {"baseColor", "diffuse"},
-    {"major_radius", "major"},
-    {"minor_radius", "minor"},
-    {"majorRadius", "major"},
-    {"minorRadius", "minor"},
-    {"depth", "height"},
-    {"vertices", "points"},
-    {"color", "material"},
-    {"colour", "material"},
-    {"radius", "major"},
-    {"thickness", "minor"},
-    {"thick", "minor"},
-    {"tube", "minor"},
-    {"tube_radius", "minor"},
-    {"tubeRadius", "minor"},
-    {"position", "direction"},
-    {"pos", "direction"},
-    {"from", "direction"}};
+// What others call our arguments, in small letters without `_`, with spaces around. Where a function
+// has several of ours, the first row counts.
+struct ArgumentNames {
+    std::string_view ours, theirs;
+};
+constexpr ArgumentNames argument_names[] = {
+    {"diffuse", " color colour albedo ambient basecolor "},
+    {"exponent", " shininess hardness "},
+    {"emission", " emissive glow "},
+    {"at", " position pos center eye location origin from "},
+    {"look_at", " target lookat to focus "},
+    {"direction", " dir position pos from towards "},
+    {"height", " h length depth "},
+    {"radius", " r rounding roundradius "},
+    {"major", " r1 R radius1 majorradius radius outer ringradius "},
+    {"minor", " r2 r radius2 minorradius thickness thick tube tuberadius inner "},
+    {"bottom", " r1 bottomradius base "},
+    {"top", " r2 topradius tip "},
+    {"r", " radius amount distance "},
+    {"k", " radius r smoothness smooth blend fillet amount "},
+    {"sides", " n faces nsides numsides "},
+    {"count", " n times num number repetitions "},
+    {"n", " count times num number copies "},
+    {"by", " factor v vector offset delta displacement translation amount "},
+    {"axis", " v normal direction around dir "},
+    {"angle", " a degrees "},
+    {"size", " width dimensions extent extents dims scale length "},
+    {"thickness", " thick width wall "},
+    {"cell", " step spacing period size gap distance interval "},
+    {"intensity", " energy strength brightness power luminosity "},
+    {"points", " vertices corners path coords pts "},
+    {"material", " color colour "},
+    {"fov", " fieldofview angle viewangle "},
+    {"color", " tint "},
+    {"a", " start p1 from "},
+    {"b", " end p2 to "},
+    {"octaves", " octave layers "},
+    {"alpha", " lacunarity "},
+    {"beta", " gain persistence "},
+    {"rate", " amount twist strength angle "},
+    {"specular", " reflection highlight "},
+    {"texture", " map image file "},
+    {"max_steps", " steps "},
+    {"far", " maxdistance farplane "},
+    {"time", " seconds duration "},
+    {"ambient", " ambientlight "},
+    {"ambient_occlusion", " ao "},
+    {"shadow_darkness", " shadow shadows "},
+    {"soft_shadows", " softness "}};
 
 // What only other ways of making shapes need.
 constexpr std::array<std::string_view, 14> needless = {
@@ -195,8 +166,12 @@ bool letters_remedy(Interpreter &ev, std::string_view function, std::span<const 
 }
 
 std::string our_argument(std::string_view theirs, std::span<const Formal> formals) {
-    for (const auto &[elsewhere, ours] : argument_names)
-        if (elsewhere == theirs && has(formals, ours)) return std::string(ours);
+    const std::string plain = theirs.size() > 1 ? plain_name(theirs) : std::string(theirs);
+    for (const Formal &f : formals)
+        if (plain_name(f.name) == plain) return std::string(f.name);
+    const std::string word = " " + plain + " ";
+    for (const auto &[ours, elsewhere] : argument_names)
+        if (elsewhere.find(word) != elsewhere.npos && has(formals, ours)) return std::string(ours);
     std::vector<std::string> names;
     for (const Formal &f : formals)
         if (f.name[0] != '_') names.emplace_back(f.name);
@@ -258,6 +233,8 @@ class Remedy {
         const std::string axis = axis_text(ev_, a.value, a.span);
         if (names_an_axis(name) && lies_along_y(function_) && !axis.empty())
             call = fmt::format(".orient(Y, {})", axis);
+        else if ((name == "x" || name == "y" || name == "z") && formals_[0].name != "s")
+            call = fmt::format(".translate({}: {})", name, source_text(ev_, a.span));
         else if (const auto method = method_for(name);
                  !method.empty() && (name != "center" || a.value.kind != ValueKind::Bool))
             call = fmt::format(".{}({})", method, source_text(ev_, a.span));

@@ -148,8 +148,24 @@ static void report_too_many(Interpreter &ev, std::string_view name, std::span<co
     } else if (name == "background")
         d.help("a gradient is a function of the direction: "
                "`background(d => mix(white, skyblue, saturate(d.y)))`");
+    else if (name == "sphere" && args.size() == 3)
+        d.help("a ball elsewhere is `sphere(1).translate([x, y, z])`, a stretched one "
+               "`ellipsoid([1, 2, 3])`");
     else if (name == "cylinder" || name == "cone")
         d.help("a cone without its tip is `capped_cone(bottom, top, height)`");
+}
+
+// The call that a function of the library has in its description; empty: none.
+static std::string example_of(Interpreter &ev, std::string_view name) {
+    const auto function = look_up(ev, ev.prelude_frame, intern(ev, std::string(name)));
+    if (!function || function->kind != ValueKind::Closure) return {};
+    const Closure c = ev.closures[function->id];
+    const std::string &doc = c.ast->functions[c.function].doc;
+    constexpr std::string_view mark = "Example: `";
+    const std::size_t begin = doc.find(mark);
+    if (begin == doc.npos) return {};
+    const std::size_t first = begin + mark.size(), end = doc.find('`', first);
+    return end == doc.npos ? std::string() : doc.substr(first, end - first);
 }
 
 static void report_missing(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
@@ -167,6 +183,9 @@ static void report_missing(Interpreter &ev, std::string_view name, std::span<con
         const Span before{args[0].span.source, args[0].span.begin, args[0].span.begin};
         d.help("a range begins somewhere: `range(0, n)`, or `0..n`", {{before, "0, "}});
     }
+    if (!d.fix)
+        if (const std::string example = example_of(ev, name); !example.empty())
+            d.help(fmt::format("as in `{}`", example));
     if (!is_library_place(ev, missing.declared)) d.label(missing.declared, "declared here");
 }
 
@@ -435,9 +454,36 @@ static void warn_of_degrees_in_vector(Interpreter &ev, const Formal &formal, con
         .help(fmt::format("write `{}` if degrees are meant", written), {{given.span, written}});
 }
 
-// `rotate(90)`: a plain literal of more than a turn.
+// The number in `i * 30`, of those that are parts of a full turn in degrees; nothing: none.
+static std::optional<Span> degrees_in_product(const Interpreter &ev, Span place) {
+    constexpr std::string_view parts = " 10 15 20 30 36 40 45 60 72 90 120 180 360 ";
+    const std::string_view written = text(ev.sources, place);
+    const std::size_t sign = written.find(" * ");
+    if (sign == written.npos || written.find_first_of("*/+-%^", sign + 2) != written.npos)
+        return std::nullopt;
+    const auto is_part = [&](std::string_view word) {
+        return parts.find(" " + std::string(word) + " ") != parts.npos;
+    };
+    const auto at = [&](std::size_t begin, std::size_t end) {
+        return Span{place.source, static_cast<std::uint32_t>(place.begin + begin),
+                    static_cast<std::uint32_t>(place.begin + end)};
+    };
+    if (is_part(written.substr(sign + 3))) return at(sign + 3, written.size());
+    return is_part(written.substr(0, sign)) ? std::optional(at(0, sign)) : std::nullopt;
+}
+
+// `rotate(90)`: a plain literal of more than a turn; `rotate(i * 30)`, `cos(i * 30)`.
 void warn_of_degrees(Interpreter &ev, const Formal &formal, const Given &given, const Value &v) {
-    if (!given.plain_literal || !formal.is_angle) return;
+    if (!formal.is_angle || is_library_place(ev, given.span)) return;
+    if (!given.plain_literal) {
+        const auto part =
+            given.value.kind == ValueKind::Int ? degrees_in_product(ev, given.span) : std::nullopt;
+        if (!part) return;
+        const std::string degrees = source_text(ev, *part) + "deg";
+        report(ev, Code::Units, given.span, fmt::format("`{}` is in radians", formal.name))
+            .help(fmt::format("write `{}` if degrees are meant", degrees), {{*part, degrees}});
+        return;
+    }
     if (v.kind == ValueKind::Vec) return warn_of_degrees_in_vector(ev, formal, given, v);
     if (!is_scalar(ev, v) || std::abs(v.num[0]) <= 6.5) return;
     report(ev, Code::Units, given.span,

@@ -191,6 +191,12 @@ bool no_shape_before(Interpreter &ev, std::string_view name, const lang::Functio
     return true;
 }
 
+Value report_two_dots(Interpreter &ev, Span from, Span to) {
+    report(ev, Code::TypeMismatch, from, "a range goes from one number to another, this is a shape")
+        .help("a function is applied by one dot", {{{from.source, from.end, to.begin}, "."}});
+    return poison();
+}
+
 // -- what a call lacks ---------------------------------------------------------------------------
 
 std::string loop_variable(const Interpreter &ev, Span place) {

@@ -330,6 +330,20 @@ std::optional<double> want_known_number(Interpreter &ev, const Value &v, Span pl
     return is_poison(x) ? std::nullopt : std::optional(x.num[0]);
 }
 
+// `l.length` where a count is wanted: of a vector that is its length.
+static void help_with_count(const Interpreter &ev, Diagnostic &d, Span place) {
+    constexpr std::string_view member = ".length";
+    const std::string_view written = text(ev.sources, place);
+    if (!written.ends_with(member) || is_library_place(ev, place)) {
+        d.help("`int(x)` cuts the fraction off, `round(x)` takes the nearest");
+        return;
+    }
+    const auto end = static_cast<std::uint32_t>(place.end - member.size());
+    d.help("how many there are is `len(…)`; this is the length of a vector",
+           {{{place.source, place.begin, place.begin}, "len("},
+            {{place.source, end, place.end}, ")"}});
+}
+
 std::optional<int> want_known_int(Interpreter &ev, const Value &v, Span place, What what) {
     if (!is_scalar(ev, v)) {
         want(ev, v, place, what, "a whole number");
@@ -338,8 +352,10 @@ std::optional<int> want_known_int(Interpreter &ev, const Value &v, Span place, W
     auto known = element_as_known(ev, v, place, what);
     if (!known) return std::nullopt;
     if (known->num[0] != std::floor(known->num[0]) || std::abs(known->num[0]) > 2147483647.0) {
-        report(ev, Code::TypeMismatch, place,
-               fmt::format("{} wants a whole number, this is {}", what, known->num[0]));
+        Diagnostic &d =
+            report(ev, Code::TypeMismatch, place,
+                   fmt::format("{} wants a whole number, this is {}", what, known->num[0]));
+        help_with_count(ev, d, place);
         return std::nullopt;
     }
     return static_cast<int>(known->num[0]);

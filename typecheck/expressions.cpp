@@ -40,10 +40,13 @@ static Value eval_list(Interpreter &ev, const File &ast, const lang::List &list,
 
 static Value eval_range(Interpreter &ev, const File &ast, const lang::Range &range,
                         std::uint32_t frame) {
-    Value first = eval(ev, ast, range.first, frame), last = eval(ev, ast, range.last, frame);
+    const Value first = eval(ev, ast, range.first, frame);
+    const Span from = ast.exprs[range.first].span, to = ast.exprs[range.last].span;
+    if (first.kind == ValueKind::Shape) return report_two_dots(ev, from, to);
+    const Value last = eval(ev, ast, range.last, frame);
     if (is_poison(first) || is_poison(last)) return poison();
-    auto a = want_known_int(ev, first, ast.exprs[range.first].span, "a range's first number");
-    auto b = want_known_int(ev, last, ast.exprs[range.last].span, "a range's last number");
+    auto a = want_known_int(ev, first, from, "a range's first number");
+    auto b = want_known_int(ev, last, to, "a range's last number");
     if (!a || !b) return poison();
     Value v = make_value(ValueKind::Range);
     v.num = {double(*a), double(*b) + (range.inclusive ? 1 : 0), 1, 0};

@@ -72,20 +72,38 @@ std::string nearest_fitting(Interpreter &ev, std::uint32_t frame, const std::str
 
 } // namespace
 
+// A name that is spelled like one of these but for capital letters and `_`, and fits; empty: none.
+static std::string same_letters(Interpreter &ev, std::uint32_t frame, const std::string &plain,
+                                const std::vector<std::string> &names, const Wanted &wanted) {
+    for (const std::string &name : names)
+        if (plain_name(name) == plain && fits(ev, frame, name, name, wanted)) return name;
+    return {};
+}
+
 std::string likely_name(Interpreter &ev, std::uint32_t frame, const std::string &name,
                         const Wanted &wanted) {
-    if (const std::string known(name_from_elsewhere(name));
-        !known.empty() && fits(ev, frame, known, known, wanted) &&
-        (wanted.use == Use::Called || !is_function(*look_up(ev, frame, intern(ev, known)))))
-        return known;
+    const auto known = [&](std::string_view theirs) -> std::string {
+        const std::string ours(name_from_elsewhere(theirs));
+        const bool fit =
+            !ours.empty() && fits(ev, frame, ours, ours, wanted) &&
+            (wanted.use == Use::Called || !is_function(*look_up(ev, frame, intern(ev, ours))));
+        return fit ? ours : std::string();
+    };
+    if (std::string ours = known(name); !ours.empty()) return ours;
     if (!way_from_elsewhere(name).empty()) return {};
     if (!may_compare_names(ev, ev.symbol_names.size())) return {};
     std::vector<std::string> names = visible_names(ev, frame);
-    // `sdBox`, `opUnion`, `sdf_sphere`: a library of shader code has its prefixes
+    // `smoothUnion`, and with what another library puts around its names: `sdBox`, `createCube`
+    constexpr std::size_t shortest = 3;
+    for (const std::string &within : names_within(name)) {
+        if (within.size() < shortest) continue;
+        if (std::string ours = same_letters(ev, frame, within, names, wanted); !ours.empty())
+            return ours;
+        if (std::string ours = known(within); !ours.empty()) return ours;
+    }
     for (const std::string_view prefix : {"sdf_", "sd_", "op_", "sdf", "sd", "op"}) {
-        if (!name.starts_with(prefix) || name.size() < prefix.size() + 3) continue;
+        if (!name.starts_with(prefix) || name.size() < prefix.size() + shortest) continue;
         const std::string rest = name.substr(prefix.size());
-        if (const auto ours = name_from_elsewhere(rest); !ours.empty()) return std::string(ours);
         const std::string near = nearest_fitting(ev, frame, rest, rest, names, wanted);
         if (!near.empty() && edit_distance(near, rest) <= 1) return near;
     }
@@ -192,6 +210,24 @@ static std::optional<Span> bound_below(const Wanted &wanted, const std::string &
     return std::nullopt;
 }
 
+// `ff8800`.
+static bool is_hex_color(std::string_view name) {
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    const auto is_hex = [&](char c) {
+        return is_digit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
+    };
+    return (name.size() == 6 || name.size() == 8) && std::ranges::all_of(name, is_hex) &&
+           std::ranges::any_of(name, is_digit);
+}
+
+// `np.linspace` was told to need no module; where there is no such function, only that is said.
+static void leave_module(Interpreter &ev, Span place) {
+    const std::size_t dot = text(ev.sources, place).find('.');
+    if (dot == std::string_view::npos) return;
+    const auto end = static_cast<std::uint32_t>(place.begin + dot);
+    ev.diagnostics.withdraw(Code::ForeignSyntax, {place.source, place.begin, end});
+}
+
 void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place,
                          const Wanted &wanted) {
     if (std::ranges::any_of(name, [](char c) { return (c & 0x80) != 0; })) return; // letters, told
@@ -200,6 +236,8 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string
     if (lacking(ev, name, near)) return; // one cause, one report
     const bool of_user = ev.quiet == 0 && !is_library_place(ev, place);
     if (of_user && told_before(ev, name, place)) return;
+    const std::string_view way = way_from_elsewhere(name);
+    if (of_user && (!way.empty() || near.empty())) leave_module(ev, place);
     Diagnostic &d = report(ev, Code::UnknownName, place,
                            fmt::format("nothing here is called `{}`", short_name(name)));
     if (const auto below = bound_below(wanted, name, place)) {
@@ -221,7 +259,11 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string
                "library's shapes stand outside of it, as `sphere(r).translate(c)`");
         return;
     }
-    const std::string_view way = way_from_elsewhere(name);
+    if (is_hex_color(name)) {
+        d.help(fmt::format("a colour by its hexadecimal digits is `#{}`", name),
+               {{place, "#" + name}});
+        return;
+    }
     if (const auto edit = of_user ? scene_edit(ev, name, place) : std::nullopt)
         d.help(std::string(way), {*edit});
     else if (!way.empty())

@@ -31,8 +31,10 @@ void help_with_shape(Diagnostic &d, std::string_view name) {
         {"texture", painted}};
     for (const auto &[known, way] : ways)
         if (name == known) d.help(std::string(way));
-    if (name.ends_with("_union") || name.ends_with("_intersection") ||
-        name.ends_with("_difference"))
+    constexpr std::array<std::string_view, 5> joints = {"smooth", "round", "chamfer", "stairs",
+                                                        "columns"};
+    if (std::ranges::find(joints, name.substr(0, name.find('_'))) != joints.end() &&
+        name.find('_') != name.npos)
         d.help(fmt::format("the shapes stand in a block behind it: `{}(r) {{ … }}`", name));
 }
 

@@ -65,6 +65,10 @@ void report_negated_shape(Interpreter &ev, Span place, Span operand);
 void help_with_parts(const Interpreter &ev, Diagnostic &d, const Value &field, Span place);
 void help_with_condition(const Interpreter &ev, Diagnostic &d, Span place);
 
+// A name in small letters without `_`; and that, also without what libraries put before and behind
+// the names of all things of a kind, as `makeCube` and `SphereGeometry`.
+std::string plain_name(std::string_view name);
+std::vector<std::string> names_within(std::string_view name);
 // What other languages and libraries call what is here; empty: nothing is known.
 std::string_view name_from_elsewhere(std::string_view name);
 // The same of types.
@@ -125,6 +129,9 @@ std::optional<Edit> point_edit(const Interpreter &ev, const std::string &name, S
 // For an argument that is given by its place and by its name: the name's value, in its place.
 Fix remedy_of_duplicate(Interpreter &ev, std::string_view function, std::span<const Argument> args,
                         const Argument &named, Span call);
+
+// `sphere(1)..translate(x: 2)`, of which the shape stands at `from`.
+Value report_two_dots(Interpreter &ev, Span from, Span to);
 
 // For numbers in a row where one vector is wanted; the edits only where they are as many, or two
 // for a place.

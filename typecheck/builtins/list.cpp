@@ -189,6 +189,28 @@ static std::optional<double> seed_of(Interpreter &ev, const CallSite &site, cons
     return want_known_number(ev, v, site.arg(i), "a seed", Limit::Finite);
 }
 
+// `random(0.2, 0.5)`: bounds elsewhere, a seed and its second number here.
+static void warn_of_bounds(Interpreter &ev, const CallSite &site, std::span<const Value> args) {
+    const Span place = site.call;
+    const bool two = is(args[0], ValueKind::Float) && is_scalar(ev, args[1]) &&
+                     is(args[2], ValueKind::None) && is(args[3], ValueKind::None);
+    if (!two || ev.quiet > 0 || is_library_place(ev, place)) return;
+    const std::string_view call = text(ev.sources, place); // of numbers as they are written
+    if (call.find_first_not_of("random(0123456789., )-") != call.npos || !call.ends_with(')'))
+        return;
+    const std::string seed = seed_text(ev, place);
+    Diagnostic d{Code::ForeignSyntax,
+                 Severity::Warning,
+                 "of two numbers the first is a seed, and the result is from 0 to 1",
+                 {place, {}},
+                 {},
+                 {},
+                 {}};
+    d.help(fmt::format("if it is meant to lie between them, write `random(lo, hi, {})`", seed),
+           {{{place.source, place.end - 1, place.end - 1}, ", " + seed}});
+    ev.diagnostics.add(std::move(d));
+}
+
 // random(seed), random(seed, k) in 0..1; random(lo, hi, seed)
 static Value random_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     bool no_lo = is(args[0], ValueKind::None), no_seed = is(args[2], ValueKind::None);
@@ -204,6 +226,7 @@ static Value random_call(Interpreter &ev, const CallSite &site, std::vector<Valu
         return poison();
     }
     if (no_lo || no_seed || is(args[1], ValueKind::None)) {
+        warn_of_bounds(ev, site, args);
         auto seed = seed_of(ev, site, no_lo ? args[2] : args[0], no_lo ? 2 : 0);
         std::optional<double> k = 0.0;
         for (std::size_t i : {std::size_t{1}, std::size_t{3}})

@@ -350,6 +350,10 @@ static Value axis_index_call(Interpreter &ev, const CallSite &site, std::vector<
     return integer(-1);
 }
 
+static std::vector<BuiltinParameter> argument_of(Op op) {
+    return {{.name = "x", .is_angle = op == Op::Sin || op == Op::Cos || op == Op::Tan}};
+}
+
 void add_numeric_builtins(std::vector<Builtin> &table) {
     auto add = [&](const char *name, std::vector<BuiltinParameter> parameters, auto call,
                    const char *doc, bool variadic = false, bool library = false) {
@@ -358,7 +362,7 @@ void add_numeric_builtins(std::vector<Builtin> &table) {
         table.push_back({name, std::move(parameters), variadic, library, call, "", doc, !compares});
     };
 #define FATHOM_FUNCTION(name, function, glsl, weight, cost, parity, trouble, undefined, doc)       \
-    if (Op::name != Op::Atan) add(#function, {{"x"}}, function_call<Op::name>, doc);
+    if (Op::name != Op::Atan) add(#function, argument_of(Op::name), function_call<Op::name>, doc);
 #include "ir/ops.def"
     add("atan", {{"y"}, {"x", true}}, atan_call,
         "the angle whose tangent is y, or of the point (x, y); 0 at the origin");
