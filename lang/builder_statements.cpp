@@ -343,6 +343,8 @@ Builder::Index Builder::statement_end(Index first) const {
     while (i < tokens_.tokens.size()) {
         if (opens(kind(i))) {
             i = match(i) + 1;
+        } else if (kind(i) == Tok::BraceClose && match(i) < first) {
+            return i; // of the block around it, which no statement leaves
         } else if (i >= failed_ && (kind(i) == Tok::BraceClose ||
                                     (kind(i) == Tok::End && kind(i + 1) != Tok::Else))) {
             return i;

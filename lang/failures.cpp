@@ -183,7 +183,13 @@ void Builder::generic_failure(Wanted wanted, Index at) {
                    ", and what is done to a shape behind a `.`");
         if ((begins_operand(found) || begins_statement(found)) && kind(at - 1) != Tok::Name) {
             const std::uint32_t end = token(at - 1).end;
-            d.help("begin a new line, or part statements by `;`", {{{id_, end, end}, ";"}});
+            const bool shapes = found == Tok::Name && kind(at - 1) == Tok::Close &&
+                                kind(at + 1) == Tok::Open && !token(at).first_on_line;
+            if (shapes) // `sphere(1) box(1)`
+                d.help("an operator is missing: `a | b` unites shapes, `a - b` cuts b out of a, "
+                       "`a & b` is what both have in common");
+            else
+                d.help("begin a new line, or part statements by `;`", {{{id_, end, end}, ";"}});
         }
         break;
     case Wanted::OpenParen: d.note("a function without parameters has empty parentheses"); break;

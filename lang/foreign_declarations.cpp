@@ -338,7 +338,7 @@ bool Builder::foreign_head(Index first) {
         const bool is_function = is_one_of(word, function_words) || is_type_word(type) ||
                                  is_one_of(kind(body), {Tok::Body, Tok::Trailing, Tok::StrayBrace});
         if (!is_function) return false;
-        if (declared.starts_with("main") && word == "void") {
+        if (declared.starts_with("main") && (word == "void" || word == "int")) {
             foreign(span(first, name), "a scene has no " + in_code(declared))
                 .note("the shapes that stand at top level are the scene");
             return true;

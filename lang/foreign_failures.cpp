@@ -173,7 +173,9 @@ bool Builder::foreign_group(Index at, bool list) {
         const Index close = match(open);
         Diagnostic &d = diagnostics_.add(Code::WrongPlace, span(at), "a `for` has no value");
         const std::string list = at > open + 1 ? nested_loops(open, at) : std::string();
-        if (!list.empty() && list.find('\n') == std::string::npos) // `sum(x for x in l)`
+        if (at == open + 1 && kind(at + 1) == Tok::Name && kind(at + 2) != Tok::In) // Lisp's
+            d.help("a loop is written `for i in list { … }`");
+        else if (!list.empty() && list.find('\n') == std::string::npos) // `sum(x for x in l)`
             d.help("write " + in_code(list), {{span(open + 1, close - 1), list}});
         else if (at == open + 1 && kind(open - 1) == Tok::Name)
             d.help("a block takes it", {{span(open), " { "}, {span(close), " }"}});
@@ -202,7 +204,9 @@ bool Builder::foreign_group(Index at, bool list) {
             .help("write `[ … ]`", {{span(open), "["}, {span(close), "]"}});
         return true;
     }
-    if (!list && found == Tok::Assign && is_body_of_lambda(open, at)) { // `p => p.x ^ 2 = 1`
+    const bool equation = !list && found == Tok::Assign && open > 0 &&
+                          (is_body_of_lambda(open, at) || text(open - 1) == "implicit");
+    if (equation) { // `p => p.x ^ 2 = 1`
         const Index right = at + 1;
         Index end = right;
         bool sum = false;

@@ -34,6 +34,7 @@ constexpr WordOperator word_operators[] = {
     {"minus", "-", "a difference is written `-`"},
     {"plus", "+", "a sum is written `+`"},
     {"times", "*", "a product is written `*`"},
+    {"per", "*", "what grows with the time is a product: `90deg * time`"},
     {"to", "..=", "a range is written `..=`, or `..` without its end"},
     {"until", "..", "a range is written `..`, or `..=` with its end"}};
 
@@ -253,6 +254,16 @@ bool Builder::juxtaposed_arguments(Index at) {
     if (at > 1 && is_one_of(kind(at - 2), {Tok::Name, Tok::Let, Tok::Var, Tok::Fn, Tok::Param}))
         return false;
     Index past = at;
+    if (kind(at) == Tok::Name && kind(at + 1) == Tok::Colon) { // `.translate x: 2`
+        while (!ends_statement(past)) past = match(past) > past ? match(past) + 1 : past + 1;
+        failed_ = past;
+        foreign(span(at - 1, at), "a call's arguments stand in parentheses")
+            .help("write " + in_code(std::string(text(at - 1)) + "(" +
+                                     std::string(text(token(at).begin, token(past - 1).end)) + ")"),
+                  {{{id_, token(at - 1).end, token(at).begin}, "("},
+                   {{id_, token(past - 1).end, token(past - 1).end}, ")"}});
+        return true;
+    }
     std::string call = std::string(text(at - 1)) + "(";
     std::vector<Edit> edits{{{id_, token(at - 1).end, token(at).begin}, "("}};
     while (is_atom(past)) {

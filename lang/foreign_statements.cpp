@@ -16,6 +16,9 @@ constexpr std::array<std::string_view, 6> settings = {"background", "camera",   
 constexpr std::array<std::string_view, 6> range_words = {"min",     "from", "range",
                                                          "between", "low",  "limits"};
 
+// What scripts of other programs begin with.
+constexpr std::array<std::string_view, 4> modules = {"bpy", "bmesh", "THREE", "cq"};
+
 } // namespace
 
 // `lte r = 2`, `improt "a.sdf"`: a keyword, mistyped.
@@ -285,6 +288,17 @@ bool Builder::python_import(Index first) {
     const Index past = statement_end(first);
     foreign(span(first), "`import` brings all names of a file")
         .help("write " + in_code(written), {{span(first, past - 1), written}});
+    return true;
+}
+
+// `bpy.ops.mesh.primitive_cube_add(size=2)`: of all of it only that is told.
+bool Builder::of_other_program(Index first) {
+    if (kind(first + 1) != Tok::Dot || !is_one_of(text(first), modules) ||
+        may_be_declared(text(first)))
+        return false;
+    failed_ = statement_end(first);
+    foreign(span(first), "there is no " + in_code(text(first)) + " here")
+        .help("a shape is made by a call, as `sphere(1)`, and moved by `.translate(z: 1)`");
     return true;
 }
 

@@ -51,7 +51,8 @@ constexpr ForeignWord statement_words[] = {
     {"finally", "a scene catches nothing", "leave the word away"},
     {"with", "a transform stands behind the shape that it moves",
      "write `sphere(1).translate(x: 1)`"},
-    {"loop", "a loop is written `for i in 0..8 { … }`", "write `for i in 0..n { … }`"},
+    {"loop", "a loop is written `for i in 0..8 { … }`",
+     "write `for i in 0..n { … }`, or `while true limit 100 { … }`"},
     {"foreach", "a loop is written `for i in 0..8 { … }`", "write `for x in list { … }`"},
     {"unless", "a choice is written with `if`", "write `if not (condition) { … }`"},
     {"until", "a loop is written with `while`", "write `while not (condition) { … }`"},
@@ -61,23 +62,9 @@ constexpr ForeignWord statement_words[] = {
     {"match", "a choice is written with `if`", "write `if a { … } else if b { … } else { … }`"},
     {"do", "a loop begins with its condition", "write `while condition limit n { … }`"}};
 
-// What scripts of other programs begin with.
-constexpr std::array<std::string_view, 4> modules = {"bpy", "bmesh", "THREE", "cq"};
-
 } // namespace
 
 // -- statements ----------------------------------------------------------------------------------
-
-// `bpy.ops.mesh.primitive_cube_add(size=2)`: of all of it only that is told.
-bool Builder::of_other_program(Index first) {
-    if (kind(first + 1) != Tok::Dot || !is_one_of(text(first), modules) ||
-        may_be_declared(text(first)))
-        return false;
-    failed_ = statement_end(first);
-    foreign(span(first), "there is no " + in_code(text(first)) + " here")
-        .help("a shape is made by a call, as `sphere(1)`, and moved by `.translate(z: 1)`");
-    return true;
-}
 
 bool Builder::foreign_statement(Index first) {
     const auto begins_record = [&](Index i) {
@@ -161,7 +148,7 @@ bool Builder::foreign_statement(Index first) {
                         kind(match(first + 1) + 1) == Tok::Trailing;
     const bool caught =
         is_one_of(text(first), std::array<std::string_view, 3>{"try", "except", "finally"});
-    const bool block = caught || text(first) == "do";
+    const bool block = caught || text(first) == "do" || text(first) == "loop";
     const bool applies = next == Tok::Name || next == Tok::Fn || next == Tok::Less ||
                          next == Tok::True || next == Tok::False ||
                          (next == Tok::Trailing && block) || (next == Tok::Colon && caught) ||
@@ -332,6 +319,12 @@ bool Builder::colon_range(Index at) {
 bool Builder::foreign_body(Index at) {
     const Tok found = kind(at);
     body_missing_ = true;
+    if (found == Tok::End && text(at) == ";" && kind(at + 1) == Tok::StrayBrace) { // `if a; { … }`
+        failed_ = match(at + 1);
+        foreign(span(at), "a body begins directly behind its header")
+            .help("leave the `;` away", {{span(at), ""}});
+        return true;
+    }
     if (at < tokens_.tokens.size() && found == Tok::End) {
         const Index end = body_below(at);
         bool whole = end > at && !goes_on_with_else(end);

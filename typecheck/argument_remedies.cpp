@@ -321,6 +321,8 @@ class Remedy {
     void ours(std::size_t i) {
         const std::string &name = args_[i].name->text;
         const std::string taken = our_argument(name, formals_);
+        if (const auto way = way_from_elsewhere(name); taken.empty() && !way.empty())
+            say(std::string(way));
         if (taken.empty() || !is_free(taken)) return;
         proposed_.push_back(taken);
         say(alone_ ? fmt::format("did you mean `{}`?", taken)

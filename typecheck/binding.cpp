@@ -74,7 +74,10 @@ static void help_with_prints(const Interpreter &ev, Diagnostic &d, std::span<con
     std::vector<Edit> edits;
     for (std::size_t i = 0; i + 1 < args.size(); ++i) {
         const Span a = args[i].span, b = args[i + 1].span;
-        if (args[i + 1].name || args[i + 1].trailing || a.source != b.source) return;
+        if (args[i + 1].name || args[i + 1].trailing || a.source != b.source) {
+            edits.clear();
+            break;
+        }
         const std::string_view written = text(ev.sources, a);
         const bool literal = written.size() > 1 && written.ends_with('"');
         if (!literal)

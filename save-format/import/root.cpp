@@ -42,6 +42,7 @@ void TreeReader::root(const Event &first) {
         event = in_.reader.next();
     }
     if (event.kind == EventKind::MappingStart) {
+        const NodeTypeRow root{row->type, row->name, row->children, {}}; // it has no paint
         Properties properties;
         bool given = false;
         for (;;) {
@@ -60,7 +61,7 @@ void TreeReader::root(const Event &first) {
                 continue;
             }
             if (key != "children" || given) {
-                in_.read_property(*row, event, properties, "the root");
+                in_.read_property(root, event, properties, "the root");
                 continue;
             }
             given = true;

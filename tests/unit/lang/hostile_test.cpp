@@ -34,6 +34,12 @@ TEST_CASE("256 levels are read, 257 are an error") {
     CHECK(Parsed("let l = " + times("[", 256) + times("]", 256)).codes().empty());
 }
 
+TEST_CASE("a statement that breaks off within a block that is never closed is left once") {
+    for (const char *text : {"(p{if n:)", "(p { for i in l: )\nsphere(1)", "[f { while a: ]",
+                             "f(g { if a then ) else b", "(f { x -> )", "let a = (f { match b: )"})
+        CHECK_FALSE(Parsed(text).codes().empty());
+}
+
 TEST_CASE("endless nesting is answered once") {
     for (const auto &[open, close] :
          std::initializer_list<std::pair<const char *, const char *>>{{"(", ")"},

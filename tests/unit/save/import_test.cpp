@@ -183,6 +183,14 @@ TEST_CASE("every node has its equation's form", "[save]") {
           "blend(\n  sphere(1),\n  torus(1, 0.25),\n  p => clamp(length(p - [1, 0, 0]), 0, 1)\n)");
 }
 
+TEST_CASE("the root has no properties, and those that it is given are kept", "[save]") {
+    const Imported imported = import_text("- 0.3\n- {}\n- []\n- [Generic, r, {Paint: [Sphere, p, "
+                                          "{}], Children: [[Sphere, s, {}]]}]\n");
+    CHECK(imported.said() == "4:17 yaml-value the root has no property `Paint`\n");
+    CHECK(imported.result.nodes == 1);
+    CHECK(imported.result.sdf.find("properties: {Paint: ") != std::string::npos);
+}
+
 TEST_CASE("what is wrong in the content is said with its place, and the rest loads", "[save]") {
     const auto said = [](const std::string &nodes, const std::string &materials = "[]") {
         const Imported imported = import_text(file_of(nodes, materials));
