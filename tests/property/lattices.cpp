@@ -36,8 +36,10 @@ class Hexagons : public NearlyRight {
         const double x = of_scale(), y = x * (pick(3) == 0 ? 0.75 + random() : 1.7320508);
         const bool turned = pick(4) == 0;
         std::string out = "let s = vec2(" + text(float(turned ? y : x)) + ", " +
-                          text(float(turned ? x : y)) + ")\nimplicit(p => {\n";
-        const std::string at = of({"p.xz", "p.xz", "(p.xz - vec2(0.3, 0.2))", "p.zy"});
+                          text(float(turned ? x : y)) +
+                          ")\nparam k = 0.2 in -1..2\nimplicit(p => {\n";
+        const std::string at = of({"p.xz", "p.xz", "(p.xz - vec2(0.3, 0.2))", "p.zy",
+                                   "(p.xz + vec2(0.2 * time, k))", "rotate2(p.xz, k)"});
         const std::string first = grid(at, 0, 0),
                           second = other(at, turned ? y : x, turned ? x : y);
         out += "  let a = " + first + "\n  let b = " + second + "\n";
