@@ -239,7 +239,7 @@ static void report_order(Interpreter &ev, std::span<const Formal> formals,
     if (const auto edits = names_away(formals, args); left.empty() && !edits.empty())
         d.help("the arguments stand in their order, and need no names", edits);
     else if (left.empty())
-        d.help("put it in front, or name it too");
+        d.help("put it in front, or name it too" + names_left(formals, bound));
     else
         d.help(fmt::format("write `{}: {}`", left, text(ev.sources, a.span)),
                {{{a.span.source, a.span.begin, a.span.begin}, fmt::format("{}: ", left)}});

@@ -366,6 +366,15 @@ bool is_foreign_method(Interpreter &ev, const Value &object, const File &ast,
     return true;
 }
 
+std::string names_left(std::span<const Formal> formals, std::span<const Given> given) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < formals.size(); ++i)
+        if (!given[i].given && !formals[i].takes_rest)
+            names.push_back(fmt::format("`{}:`", formals[i].name));
+    if (names.empty() || names.size() > 4) return "";
+    return fmt::format(": {}", fmt::join(names, " or "));
+}
+
 void report_negated_shape(Interpreter &ev, Span place, Span operand) {
     Diagnostic &d = report(ev, Code::LineContinues, place, "a shape cannot be negated");
     const std::string_view before = text(ev.sources, {place.source, 0, place.begin});

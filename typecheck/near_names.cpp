@@ -272,6 +272,11 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string
     if (name == "cube" || name == "square")
         d.note(fmt::format("a `{}` has its middle at the origin", near));
     if (d.fix) return;
+    if (name == "dfmodel") {
+        d.help("it is a part of the library, brought by `import \"dfmodel\" as dfmodel`",
+               {{{place.source, 0, 0}, "import \"dfmodel\" as dfmodel\n"}});
+        return;
+    }
     if (of_user && calls_member(ev, place)) // `arch.door(2)`
         d.help(fmt::format("what is in another file is brought by `import \"{0}.sdf\" as {0}`; a "
                            "value is bound by `let {0} = …`",

@@ -147,6 +147,9 @@ bool shape_out_of_place(Interpreter &ev, std::string_view name, const lang::Func
 bool no_shape_before(Interpreter &ev, std::string_view name, const lang::Function &function,
                      std::span<const Argument> args, Span callee);
 
+// ": `count:` or `copies:`", the names of the few formals that have no value.
+std::string names_left(std::span<const Formal> formals, std::span<const Given> given);
+
 // True, and reported, where a material is given as a string: `s.paint("red")`.
 bool color_in_quotes(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
                      std::span<const Given> given);

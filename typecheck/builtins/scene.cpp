@@ -227,7 +227,11 @@ void add_scene_builtins(std::vector<Builtin> &table) {
          {"look_at", true},
          {.name = "fov", .optional = true, .is_angle = true},
          {"orthographic", true}},
-        camera_call, "where the scene is seen from; `fov` is vertical");
+        camera_call,
+        "where the scene is seen from: from the point `at`, towards `look_at` (the origin); `fov` "
+        "(45deg): the vertical angle of view; `orthographic: true`: without perspective, as high "
+        "as "
+        "the angle of view is at the distance of `look_at`");
     add("light", {{"at"}, {"color", true}, {"intensity", true}}, light_call, "a light at a place");
     add("sun", {{"direction"}, {"color", true}, {"intensity", true}}, sun_call,
         "a light from far away; the direction points towards it");
