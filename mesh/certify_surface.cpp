@@ -22,6 +22,24 @@ Real3 middle_of(const Box &box) {
     for (std::size_t i = 0; i < 3; ++i) m[i] = 0.5 * (double(box.lo[i]) + box.hi[i]);
     return m;
 }
+Box part_of(const Box &box, std::size_t k) {
+    Box part = box;
+    for (std::size_t i = 0; i < 3; ++i)
+        (k >> i & 1 ? part.lo : part.hi)[i] = 0.5f * (box.lo[i] + box.hi[i]);
+    return part;
+}
+// A box and its middle, for space_of.
+void put_box(const Box &box, std::size_t at, cpu::Boxes &boxes) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        boxes.lo[i][at] = box.lo[i], boxes.hi[i][at] = box.hi[i];
+        boxes.lo[i][at + 8] = boxes.hi[i][at + 8] = 0.5f * (box.lo[i] + box.hi[i]);
+    }
+}
+// Of a box that was put there.
+bool is_open(const Inquiry &inquiry, const Evaluator &evaluator, std::size_t at, const Box &box) {
+    return space_of(evaluator, at, 0.5 * distance(real(box.lo), real(box.hi)),
+                    inquiry.made.octree.lattice.ulp, inquiry.trusts, true) == Space::Open;
+}
 // The parts of some boxes in which surface may be.
 std::vector<Box> open_parts(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
                             const cpu::ShortTape &tape, const std::vector<Box> &whole) {
@@ -34,36 +52,31 @@ std::vector<Box> open_parts(const Inquiry &inquiry, Evaluator &evaluator, cpu::B
         for (std::size_t j = 0; j < count; ++j) {
             const Box &box = whole[begin + j];
             for (std::size_t k = 0; k < 8; ++k) {
-                Box part = box;
-                for (std::size_t i = 0; i < 3; ++i) {
-                    const float cut = 0.5f * (box.lo[i] + box.hi[i]);
-                    (k >> i & 1 ? part.lo : part.hi)[i] = cut;
-                    boxes.lo[i][16 * j + k] = part.lo[i], boxes.hi[i][16 * j + k] = part.hi[i];
-                    boxes.lo[i][16 * j + 8 + k] = boxes.hi[i][16 * j + 8 + k] =
-                        0.5f * (part.lo[i] + part.hi[i]);
-                }
-                parts.push_back(part);
+                parts.push_back(part_of(box, k));
+                put_box(parts.back(), 16 * j + k, boxes);
             }
         }
         ranges_over(evaluator, tape, boxes);
         for (std::size_t j = 0; j < count; ++j)
-            for (std::size_t k = 0; k < 8; ++k) {
-                const Box &part = parts[8 * j + k];
-                if (space_of(evaluator, 16 * j + k, 0.5 * distance(real(part.lo), real(part.hi)),
-                             inquiry.made.octree.lattice.ulp, inquiry.trusts, true) == Space::Open)
+            for (std::size_t k = 0; k < 8; ++k)
+                if (const Box &part = parts[8 * j + k];
+                    is_open(inquiry, evaluator, 16 * j + k, part))
                     open.push_back(part);
-            }
     }
     return open;
 }
 void find_own(const Inquiry &inquiry, const Cell &leaf, Candidates &candidates) {
     candidates.own.clear();
+    candidates.vertices.clear();
     if (!inquiry.own) return;
     const auto at = std::ranges::lower_bound(inquiry.patches, std::pair{leaf.node, 0u});
-    for (auto p = at; p != inquiry.patches.end() && p->first == leaf.node; ++p)
+    for (auto p = at; p != inquiry.patches.end() && p->first == leaf.node; ++p) {
+        if (inquiry.first_at[p->second] < inquiry.first_at[p->second + 1])
+            candidates.vertices.push_back(p->second);
         for (std::uint32_t k = inquiry.first_at[p->second]; k < inquiry.first_at[p->second + 1];
              ++k)
             candidates.own.push_back(inquiry.at_vertex[k]);
+    }
 }
 
 // The distance of a triangle that is near enough, or else of the nearest.
@@ -73,6 +86,17 @@ double first_near(const Inquiry &inquiry, const std::vector<std::uint32_t> &tria
     for (std::size_t k = 0; k < triangles.size() && d > enough; ++k)
         d = std::min(d, to_triangle(to, inquiry.triangles[triangles[k]]));
     return d;
+}
+
+// A tape for a box alone, where that is shorter.
+TapePtr tape_in(Evaluator &evaluator, cpu::Boxes &boxes, const TapePtr &tape, const Box &box) {
+    if (is_short(*tape)) return tape;
+    boxes.count = 16;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < boxes.count; ++k)
+            boxes.lo[i][k] = box.lo[i], boxes.hi[i][k] = box.hi[i];
+    ranges_over(evaluator, *tape, boxes);
+    return shortened(evaluator, tape, 0);
 }
 
 // What is found of the surface in a leaf.
@@ -98,16 +122,6 @@ struct LeafLook {
     Budget &budget;
     TapePtr tape; // holds in the leaf
     Reach reach{};
-
-    // Goes on with a tape for this leaf alone, where that is shorter.
-    void shorten_tape(const Box &whole) {
-        boxes.count = 16;
-        for (std::size_t i = 0; i < 3; ++i)
-            for (std::size_t k = 0; k < boxes.count; ++k)
-                boxes.lo[i][k] = whole.lo[i], boxes.hi[i][k] = whole.hi[i];
-        ranges_over(evaluator, *tape, boxes);
-        tape = shortened(evaluator, tape, 0);
-    }
 
     bool is_seam(const Box &box, const Sighting &seen, bool may_wait) {
         if (budget.divisions < seam_work) return false;
@@ -195,7 +209,7 @@ Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
         leave_out_near(inquiry, candidates, open, reach.farthest);
         reach.empty = reach.empty && open.size() == all;
         if (open.empty()) break;
-        if (depth == 0) look.shorten_tape(whole);
+        if (depth == 0) look.tape = tape_in(evaluator, boxes, look.tape, whole);
         const bool last = depth == deepest || searched;
         if (depth % seam_depth == 0)
             look.leave_out_seams(open, last, depth == 0 && !last, depth == 0 && node.crossed());
@@ -223,6 +237,113 @@ struct Certifier {
     cpu::Boxes boxes;
     Candidates candidates;
 };
+
+// The parts of some leaves that are next to each other, and whose they are.
+struct Halves {
+    std::vector<Box> boxes;
+    std::vector<std::size_t> leaves;
+    void keep(const auto &is_kept) {
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < boxes.size(); ++k) {
+            if (!is_kept(k)) continue;
+            boxes[kept] = boxes[k], leaves[kept] = leaves[k];
+            ++kept;
+        }
+        boxes.resize(kept), leaves.resize(kept);
+    }
+};
+
+Box around(const std::vector<Box> &boxes) {
+    Box all = boxes[0];
+    for (const Box &box : boxes)
+        for (std::size_t i = 0; i < 3; ++i)
+            all.lo[i] = std::min(all.lo[i], box.lo[i]), all.hi[i] = std::max(all.hi[i], box.hi[i]);
+    return all;
+}
+
+// Takes halves of a leaf away that its own vertices or triangles are near enough to.
+void add_halves(const Inquiry &inquiry, const Cell &leaf, std::size_t number,
+                Candidates &candidates, Reach &reach, Halves &left) {
+    const Lattice &lattice = inquiry.made.octree.lattice;
+    const Box whole{point_of(lattice, leaf.at),
+                    point_of(lattice, corner(leaf.at, lattice.cells(leaf.level), 7))};
+    find_own(inquiry, leaf, candidates);
+    for (std::size_t k = 0; k < 8; ++k) {
+        const Box part = part_of(whole, k);
+        const Real3 middle = middle_of(part);
+        const double half = 0.5 * distance(real(part.lo), real(part.hi));
+        const double enough = inquiry.allowed - half;
+        double d = 2 * inquiry.allowed;
+        for (const std::uint32_t v : candidates.vertices)
+            d = std::min(d, distance(middle, real(inquiry.made.mesh.vertices[v])));
+        if (d > enough) d = first_near(inquiry, candidates.own, middle, enough);
+        if (d <= enough) {
+            reach.farthest = std::max(reach.farthest, (d + half) * outward);
+            reach.empty = false;
+        } else {
+            left.boxes.push_back(part);
+            left.leaves.push_back(number);
+        }
+    }
+}
+
+// What the halves of leaves alone show: most leaves are decided by it. All have one tape, which is
+// shortened once for all of them.
+std::vector<Reach> reach_by_halves(const Inquiry &inquiry, Certifier &memory,
+                                   std::span<const Cell> leaves) {
+    std::vector<Reach> reach(leaves.size());
+    Halves left;
+    for (std::size_t n = 0; n < leaves.size(); ++n)
+        add_halves(inquiry, leaves[n], n, memory.candidates, reach[n], left);
+    if (left.boxes.empty()) return reach;
+    const Octree &octree = inquiry.made.octree;
+    const Node &node = octree.nodes[static_cast<std::size_t>(leaves[0].node)];
+    const TapePtr tape =
+        tape_in(memory.evaluator, memory.boxes, octree.tapes[static_cast<std::size_t>(node.task)],
+                around(left.boxes));
+    constexpr std::size_t at_once = cpu::max_boxes / 2;
+    std::vector<bool> open(left.boxes.size());
+    for (std::size_t begin = 0; begin < left.boxes.size(); begin += at_once) {
+        const std::size_t count = std::min(at_once, left.boxes.size() - begin);
+        memory.boxes.count = 16 * ((count + 7) / 8);
+        for (std::size_t k = 0; k < memory.boxes.count / 2; ++k)
+            put_box(left.boxes[begin + std::min(k, count - 1)], 16 * (k / 8) + k % 8, memory.boxes);
+        ranges_over(memory.evaluator, *tape, memory.boxes);
+        for (std::size_t k = 0; k < count; ++k)
+            open[begin + k] =
+                is_open(inquiry, memory.evaluator, 16 * (k / 8) + k % 8, left.boxes[begin + k]);
+    }
+    left.keep([&](std::size_t k) { return open[k]; });
+    for (std::size_t k = 0; k < left.boxes.size(); ++k) {
+        const Box &box = left.boxes[k];
+        Reach &here = reach[left.leaves[k]];
+        if (!here.decided) continue;
+        const double half = 0.5 * distance(real(box.lo), real(box.hi));
+        const double enough = inquiry.allowed - half;
+        const auto near = inquiry.tree->nearest(middle_of(box), inquiry.allowed, enough);
+        here.empty = false;
+        here.decided = near && near->distance <= enough;
+        if (here.decided)
+            here.farthest = std::max(here.farthest, (near->distance + half) * outward);
+    }
+    return reach;
+}
+
+// How many leaves from the first on are next to each other, and have its tape.
+std::size_t group_of(const Octree &octree, std::span<const Cell> leaves) {
+    constexpr std::size_t most = 64;
+    constexpr int levels = 2; // above the drawing cells
+    const int shift = octree.lattice.depth - octree.lattice.level + levels;
+    const auto same = [&](const Cell &leaf) {
+        for (std::size_t i = 0; i < 3; ++i)
+            if (leaf.at[i] >> shift != leaves[0].at[i] >> shift) return false;
+        return octree.nodes[static_cast<std::size_t>(leaf.node)].task ==
+               octree.nodes[static_cast<std::size_t>(leaves[0].node)].task;
+    };
+    std::size_t count = 1;
+    while (count < std::min(most, leaves.size()) && same(leaves[count])) ++count;
+    return count;
+}
 
 } // namespace
 
@@ -252,11 +373,21 @@ void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progres
         [&](Certifier &memory, std::size_t number) {
             const std::size_t end = std::min(leaves.size(), (number + 1) * piece_of_work);
             Budget budget{divisions_a_leaf * piece_of_work, close_runs};
-            for (std::size_t k = number * piece_of_work; k < end; ++k) {
-                const bool in_vain = std::ranges::binary_search(searched, leaves[k].node);
-                const Reach reach = reach_in(inquiry, memory.evaluator, memory.boxes,
-                                             memory.candidates, leaves[k], in_vain, budget);
-                Found &here = found[number];
+            Found &here = found[number];
+            std::vector<Reach> early;
+            for (std::size_t k = number * piece_of_work, next = k; k < end; ++k) {
+                if (k == next) {
+                    const auto rest = std::span(leaves).subspan(k, end - k);
+                    const std::size_t count = group_of(inquiry.made.octree, rest);
+                    early = reach_by_halves(inquiry, memory, rest.first(count));
+                    next += count;
+                }
+                Reach reach = early[k + early.size() - next];
+                if (!reach.decided) {
+                    const bool in_vain = std::ranges::binary_search(searched, leaves[k].node);
+                    reach = reach_in(inquiry, memory.evaluator, memory.boxes, memory.candidates,
+                                     leaves[k], in_vain, budget);
+                }
                 here.divisions = divisions_a_leaf * piece_of_work - budget.divisions;
                 if (!reach.decided) {
                     here.undecided.push_back(leaves[k]);

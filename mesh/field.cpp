@@ -137,8 +137,10 @@ void ranges_where(Evaluator &evaluator, const cpu::ShortTape &tape, const cpu::B
     cut_ranges(evaluator, boxes);
 }
 
+bool is_short(const cpu::ShortTape &tape) { return tape.cost <= short_enough; }
+
 TapePtr shortened(Evaluator &evaluator, const TapePtr &tape, std::size_t box) {
-    if (tape->cost <= short_enough) return tape;
+    if (is_short(*tape)) return tape;
     const Field &field = evaluator.field;
     cpu::shorten(field.parts, evaluator.ranges, tape->selection(field.parts), box, false,
                  evaluator.made);

@@ -80,7 +80,8 @@ struct Held {
 void ranges_where(Evaluator &evaluator, const cpu::ShortTape &tape, const cpu::Boxes &boxes,
                   const std::vector<Held> &held);
 // After ranges_over, with the same tape: a tape that holds in one of the boxes; the same one where a
-// shorter one does not pay.
+// shorter one does not pay, as never where it is short.
+bool is_short(const cpu::ShortTape &tape);
 TapePtr shortened(Evaluator &evaluator, const TapePtr &tape, std::size_t box);
 
 } // namespace fathom::mesh

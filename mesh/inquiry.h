@@ -33,6 +33,7 @@ struct Inquiry {
 // do, all that is about.
 struct Candidates {
     std::vector<std::uint32_t> own, near;
+    std::vector<std::uint32_t> vertices; // of the leaf's own patches
     bool found_near = false;
 };
 
