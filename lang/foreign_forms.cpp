@@ -348,7 +348,8 @@ class Forms : WordChanges {
         }
         const bool braces =
             item > 0 && name > 0 && is_one_of(kind(past), {Tok::Body, Tok::Trailing});
-        if (item > 0 && kind(name) == Tok::Name && (kind(past) == Tok::End || fresh(past)))
+        if (item > 0 && name > 0 && kind(name) == Tok::Name &&
+            (kind(past) == Tok::End || fresh(past)))
             return without_values(i, name);
         if (name == 0 || kind(name) != Tok::Name || (kind(past) != Tok::Assign && !braces) ||
             words_[past].first_on_line)

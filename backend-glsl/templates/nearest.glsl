@@ -26,7 +26,7 @@ $if FILMS
     float best_g = g, before = g;
     int stalls = 0, look = -1; // of the circle round it
 $end
-    for (int i = $ZERO; i < ($MOST_SLIDES + 1) * (5 * $DESCENT_STEPS + 1) + 5 * $FILM_STEPS + $FILM_LOOKS; ++i) {
+    for (int i = $ZERO; i < ($MOST_SLIDES + 2) * (5 * $DESCENT_STEPS + 1) + 5 * $FILM_STEPS + $FILM_LOOKS; ++i) {
         ++looks;
 $if AROUND
         fathom_exact = true;

@@ -31,7 +31,8 @@ bool Lowering::has_parts(ShapeId id) const {
 // Through what unites, paints, moves, scales or cuts, down to what has bounds, or is endless on its own.
 // A blend's parts are looked for without what it adds between them.
 void Lowering::find_framed(ShapeId id, Framing in, std::vector<NodeId> &alone) {
-    const auto [frame, factor, cut] = in;
+    const Where frame = in.frame;
+    const NodeId factor = in.factor, cut = in.cut;
     const Shape &s = shape(id);
     const Box &box = fact(id).bounds;
     if (box.empty()) return;

@@ -40,6 +40,12 @@ TEST_CASE("a statement that breaks off within a block that is never closed is le
         CHECK_FALSE(Parsed(text).codes().empty());
 }
 
+TEST_CASE("a type of another language that breaks off is left once") {
+    for (const char *text :
+         {"f()\nstd::vector<a\xe9> rs{0.2};", "f()\nstd::vector<a b> rs;", "f()\nVec<f32 x"})
+        CHECK_FALSE(Parsed(text).codes().empty());
+}
+
 TEST_CASE("endless nesting is answered once") {
     for (const auto &[open, close] :
          std::initializer_list<std::pair<const char *, const char *>>{{"(", ")"},
