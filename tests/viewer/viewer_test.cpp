@@ -92,6 +92,18 @@ TEST_CASE("a number that was edited before, and a param, leave the driver alone;
     CHECK(difference(window.picture(), cold) == 0);
 }
 
+// A frame may take several draws.
+static Picture whole_picture(Window &window) {
+    Picture last = window.picture();
+    for (int look = 0; look < 50; ++look) {
+        Picture next = window.picture();
+        const bool is_whole = difference(last, next, 0, 0.02f) < 0.01;
+        last = std::move(next);
+        if (is_whole) break;
+    }
+    return last;
+}
+
 TEST_CASE("what is steep is shown by one bound, and then by cells without another save") {
     const std::string steep =
         "blend(torus(1, 0.3), box([2.6, 0.6, 2.6]), p => smoothstep(-0.3, 0.3, p.x)).paint(red)\n";
@@ -99,10 +111,11 @@ TEST_CASE("what is steep is shown by one bound, and then by cells without anothe
     for (int start = 0; start < 3 && !shows_both; ++start) {
         Window window(steep + camera, {"--size", "240x160"});
         window.picture(); // from here on each says that one was written
-        const Picture first = window.picture();
+        const Picture first = whole_picture(window);
         shows_both = window.reloads(2);
         CHECK(window.lines().back().find("good") != std::string::npos);
-        CHECK(difference(first, window.picture(), 0, 0.02f) < 0.01); // hits land a little elsewhere
+        CHECK(difference(first, whole_picture(window), 0, 0.02f) <
+              0.01); // hits land a little elsewhere
     }
     CHECK(shows_both);
 }
