@@ -47,7 +47,8 @@ struct PartialSum {
 // What the analysis proved of one shape, in the shape's own space.
 struct ShapeFact {
     FieldKind kind = FieldKind::Bound;
-    bool exact_outside = false; // the distance, outside the solid
+    bool exact_outside =
+        false; // the distance, outside the solid: an offset or shell of it is what it says
     ProofStatus status = ProofStatus::Proved;
     NodeId lipschitz; // of the raw field: a float expression in params and time alone; >= the true
                       // constant

@@ -139,7 +139,7 @@ Ball Prover::ball_of(ShapeId id, const Derived &k) {
 void Prover::keep_in_ball(ShapeId id, Derived &k) {
     const int dims = scene.shapes[id].dims;
     Ball own = around(k.fact.bounds, dims);
-    own.growth_rate = k.exact_outside ? 1 : up(k.growth_rate * std::sqrt(3.0), 4);
+    own.growth_rate = k.fact.exact_outside ? 1 : up(k.growth_rate * std::sqrt(3.0), 4);
     const Ball made = ball_of(id, k);
     k.ball = made.radius < own.radius ? made : own;
     if (!std::isfinite(made.radius) || !bounded(k.fact.bounds)) return;

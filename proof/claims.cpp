@@ -44,13 +44,13 @@ Derived Prover::know_library(ShapeId id) {
     for (std::size_t a = 0; a < 3; ++a)
         k.fact.symmetric[a] = k.fact.symmetric[a] || claims.symmetric[a];
     if (exact) {
-        k.exact_outside = k.parts_exact = true;
+        k.fact.exact_outside = k.parts_exact = true;
         k.parts = k.fact.bounds;
         if (claims.lo && claims.hi) k.growth_rate = 1;
         for (int a = 0; a < 3; ++a)
             k.fact.moment_arm[static_cast<std::size_t>(a)] = radius_about(k.parts, a);
     } else if (claims.lipschitz) {
-        k.exact_outside = k.parts_exact = false;
+        k.fact.exact_outside = k.parts_exact = false;
         k.parts = Box::everything();
         k.fact.moment_arm = {infinity, infinity, infinity};
     }

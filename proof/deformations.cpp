@@ -288,7 +288,7 @@ Derived Prover::know_deformed(ShapeId id) {
         (shape.map == MapKind::Taper && number(shape.args[2]) == Interval(1.0)))
         return k; // at these values it is its child
     k.fact.kind = k.fact.kind == FieldKind::Estimate ? FieldKind::Estimate : FieldKind::Bound;
-    k.exact_outside = k.parts_exact = false;
+    k.fact.exact_outside = k.parts_exact = false;
     k.outer = Box::everything(), k.outer_growth_rate = 0;
     switch (shape.map) {
     case MapKind::Twist: k = know_twist(id, k); break;

@@ -67,7 +67,8 @@ double Prover::gap_of_exact(ShapeId id) {
     const Derived &a = child(shape, 0), &b = child(shape, 1);
     const Box common = ir::hull(a.fact.bounds, b.fact.bounds);
     const bool nowhere = a.fact.bounds.empty() || b.fact.bounds.empty();
-    if (!a.exact_outside || !b.exact_outside || !common.finite() || nowhere) return infinity;
+    if (!a.fact.exact_outside || !b.fact.exact_outside || !common.finite() || nowhere)
+        return infinity;
     const double less = up(a.short_by + b.short_by);
     // of the box that holds both: outside both fields lie in [d, d + D], inside above -D/2
     double diagonal = 0;
@@ -87,7 +88,7 @@ Derived Prover::know_lerp(ShapeId id) {
     Derived k = of_child(shape);
     inherit(k, b);
     k.fact.kind = FieldKind::Bound;
-    k.exact_outside = k.parts_exact = false;
+    k.fact.exact_outside = k.parts_exact = false;
     NodeId t = shape.args[0];
     bool varies = reads_point(t);
     FieldBound weight;

@@ -93,7 +93,7 @@ Derived Prover::know_rotate(ShapeId id, Derived k) {
     const auto swell = [&](double &rate, bool exact) {
         if (swells > 1 && rate > 0) rate = exact ? std::min(rate, 1.0) : up(rate * swells);
     };
-    swell(k.growth_rate, k.exact_outside);
+    swell(k.growth_rate, k.fact.exact_outside);
     swell(k.outer_growth_rate, k.fact.kind == FieldKind::Exact);
     std::array<double, 3> moment_arm{infinity, infinity, infinity};
     std::array<bool, 3> symmetric{};
@@ -145,7 +145,7 @@ Derived Prover::know_scale(ShapeId id, Derived k) {
         // min|s| * |J^T g| <= min|s| / min|s| * L: the factor takes back what the map adds. Not
         // exact any more, and gradients no longer point from nearest points.
         if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
-        k.exact_outside = k.parts_exact = false;
+        k.fact.exact_outside = k.parts_exact = false;
         forget_moment_arms(k);
         double ratio = least > 0 ? most / least : infinity;
         k.growth_rate = up(k.growth_rate * ratio),
@@ -176,7 +176,7 @@ Derived Prover::know_fold(ShapeId id, Derived k) {
     // the shape lies on one side is known where its box does.
     k.parts_exact = false;
     const auto flat = fold_is_clean(shape.args[0], child(shape).fact.bounds);
-    k.exact_outside = k.exact_outside && flat;
+    k.fact.exact_outside = k.fact.exact_outside && flat;
     k.short_by = up(k.short_by + flat.value_or(0));
     k.fact.symmetric = fold_symmetry(shape.args[0], k.fact.symmetric);
     k.fact.moment_arm = {infinity, infinity, infinity};
@@ -205,7 +205,7 @@ Derived Prover::know_revolve(ShapeId id, Derived k) {
     if (!clear &&
         !mirrored) { // parts beyond the axis pull the field down: a bound, not the distance
         if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
-        k.exact_outside = k.parts_exact = false;
+        k.fact.exact_outside = k.parts_exact = false;
     }
     // In the plane through p and the axis the gradient g is the profile's, and s its nearest
     // point, as far as o further from the axis: |s x g| there is at most M + |o|, M the

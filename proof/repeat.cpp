@@ -41,7 +41,7 @@ Prover::Copies Prover::ring_copies(const Shape &shape, const ir::Repetition &rep
     Copies copies;
     copies.plan.copy = motif.fact.bounds;
     const Box &box = motif.fact.bounds;
-    const bool differ = static_cast<bool>(repetition.id), exact = motif.exact_outside;
+    const bool differ = static_cast<bool>(repetition.id), exact = motif.fact.exact_outside;
     int n = int(std::max(number(shape.args[0]).hi, 1.0));
     auto a = static_cast<std::size_t>(repetition.axis);
     // The first copy's direction, and what lies across: of y they are x and z; of x, y and z;
@@ -108,7 +108,7 @@ Prover::Copies Prover::lattice_copies(const Shape &shape, const ir::Repetition &
     Copies copies;
     copies.plan.copy = motif.fact.bounds;
     const Box &box = motif.fact.bounds;
-    const bool differ = static_cast<bool>(repetition.id), exact = motif.exact_outside;
+    const bool differ = static_cast<bool>(repetition.id), exact = motif.fact.exact_outside;
     Vec cells = vector(shape.args[0]), counts = vector(shape.args[1]);
     for (std::size_t a = 0; a < 3; ++a) {
         if (!repetition.along[a] || box.empty()) {
@@ -187,7 +187,7 @@ Derived Prover::know_repeat(ShapeId id) {
     k.outer = Box::everything(), k.outer_growth_rate = 0;
     k.parts = Box::everything();
     k.fact.moment_arm = {infinity, infinity, infinity};
-    const bool differ = static_cast<bool>(repetition.id), exact = motif.exact_outside;
+    const bool differ = static_cast<bool>(repetition.id), exact = motif.fact.exact_outside;
     const Copies copies = repetition.polar ? ring_copies(shape, repetition, motif, k)
                                            : lattice_copies(shape, repetition, motif, k);
     ir::RepeatPlan plan = copies.plan;
@@ -214,7 +214,7 @@ Derived Prover::know_repeat(ShapeId id) {
     }
     if (plan.guard) {
         k.fact.kind = k.fact.kind == FieldKind::Estimate ? FieldKind::Estimate : FieldKind::Bound;
-        k.exact_outside = k.parts_exact = false;
+        k.fact.exact_outside = k.parts_exact = false;
         k.parts = Box::everything();
         k.fact.moment_arm = {infinity, infinity, infinity};
         k.growth_rate = infinity; // the guard may be less than the field

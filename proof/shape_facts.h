@@ -19,8 +19,6 @@ struct Ball {
 
 struct Derived {
     ir::ShapeFact fact;
-    // Distance exact outside the solid: an offset or shell of it is what it says.
-    bool exact_outside = false;
     // A tree of min and max over exact fields, rigidly moved: its value is a part's true distance.
     bool parts_exact = false;
     // The field's gradient is everywhere a convex mean of vectors L*n, n the unit gradient of an

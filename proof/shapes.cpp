@@ -98,17 +98,17 @@ void pseudo_norm(Derived &k, const Derived &c) {
 // The next operand's box, gradients and exactness joined to what is known of those before it.
 Derived Prover::join_operand(const Shape &shape, Derived k, const Derived &first,
                              const Derived &c) {
-    const bool exact_outside = k.exact_outside && c.exact_outside,
+    const bool exact_outside = k.fact.exact_outside && c.fact.exact_outside,
                parts_exact = k.parts_exact && c.parts_exact;
     inherit(k, c);
-    k.exact_outside = k.parts_exact = false;
+    k.fact.exact_outside = k.parts_exact = false;
     const bool sized = shape.kind == ShapeKind::Blend || shape.kind == ShapeKind::Seam;
     double r = sized ? std::max(number(shape.args[0]).hi, 0.0) : 0;
     if (!std::isfinite(r)) r = 0;
     switch (shape.kind) {
     case ShapeKind::Union:
         unite(k, c);
-        k.exact_outside = exact_outside;
+        k.fact.exact_outside = exact_outside;
         k.parts_exact = parts_exact;
         break;
     case ShapeKind::Intersection:
@@ -216,7 +216,7 @@ Derived Prover::know_set(ShapeId id) {
 Derived Prover::know_displaced(ShapeId id) {
     const Shape shape = scene.shapes[id];
     Derived k = of_child(shape);
-    if (shape.kind != ShapeKind::Displace && !k.exact_outside && !k.failed &&
+    if (shape.kind != ShapeKind::Displace && !k.fact.exact_outside && !k.failed &&
         k.fact.kind != FieldKind::Estimate) {
         bool grows = shape.kind == ShapeKind::Shell || number(shape.args[0]).hi > 0;
         if (grows)
@@ -266,13 +266,13 @@ Derived Prover::know_displaced(ShapeId id) {
         differ_by(k, half);
         k.outer = Box::everything();
         k.outer_growth_rate = 0;
-        k.exact_outside = was_exact && !varies;
+        k.fact.exact_outside = was_exact && !varies;
     } else {
         k.fact.bounds = reached(k.fact.bounds, k.growth_rate, amount.hi);
         k.outer = reached(k.outer, k.outer_growth_rate, -amount.lo);
         differ_by(k, amount.magnitude());
         k.lowered = up(k.lowered + std::max(-amount.lo, 0.0));
-        k.exact_outside = k.exact_outside && !varies;
+        k.fact.exact_outside = k.fact.exact_outside && !varies;
         // What moves inward only is still below the child's field: the shell begins at the surface
         // itself.
         if (shape.kind == ShapeKind::Displace && !k.failed) {
@@ -340,7 +340,7 @@ Derived Prover::know_instances(ShapeId id) {
     if (instance_table.count > 1) {
         k.fact.kind = k.fact.kind == FieldKind::Estimate ? FieldKind::Estimate : FieldKind::Bound;
         bool plain = !instance_table.smooth;
-        k.exact_outside = k.exact_outside && plain;
+        k.fact.exact_outside = k.fact.exact_outside && plain;
         k.parts_exact = k.parts_exact && plain;
         // By induction over the fold: {acc < t} lies in the copies' box grown by growth_rate*(t + k).
         if (instance_table.smooth) {

@@ -98,7 +98,6 @@ void Prover::run() {
             derived.push_back(k);
         }
         scene.facts[i] = k.fact; // padded there alone, so that the slack does not add up
-        scene.facts[i].exact_outside = k.exact_outside;
         scene.facts[i].bounds = padded(k.fact.bounds);
         scene.facts[i].repeat.copy = padded(k.fact.repeat.copy);
     }
@@ -230,7 +229,7 @@ Derived Prover::know(ShapeId id) {
         k.fact.kind = FieldKind::Exact;
         k.fact.bounds = k.parts = empty_box();
         k.fact.symmetric = {true, true, true};
-        k.exact_outside = k.parts_exact = true;
+        k.fact.exact_outside = k.parts_exact = true;
         set_lipschitz(k, 1);
         return k;
     }
@@ -245,7 +244,7 @@ Derived Prover::know(ShapeId id) {
         Derived k = of_child(shape);
         std::swap(k.fact.bounds, k.outer);
         std::swap(k.growth_rate, k.outer_growth_rate);
-        k.exact_outside = k.fact.kind == FieldKind::Exact;
+        k.fact.exact_outside = k.fact.kind == FieldKind::Exact;
         return k;
     }
     case ShapeKind::Lerp: return know_lerp(id);

@@ -123,7 +123,7 @@ Derived Prover::know_within(ShapeId id) {
     k.parts = Box::everything();
     k.fact.moment_arm = {infinity, infinity, infinity};
     if (k.fact.kind == FieldKind::Exact) k.fact.kind = FieldKind::Bound;
-    k.exact_outside = k.parts_exact = false;
+    k.fact.exact_outside = k.parts_exact = false;
     for (std::size_t a = 0; a < 3; ++a) {
         bool centred = zone.kind == ir::RegionKind::Tube ||
                        zone.kind == ir::RegionKind::Everywhere || zone.center[a] == Interval(0.0);

@@ -41,14 +41,12 @@ void Lowering::find_framed(ShapeId id, Framing in, std::vector<NodeId> &alone) {
         const NodeId raw = expression_of(Reading::Marched, part, frame);
         return factor ? graph_.mul(factor, raw) : raw;
     };
-    const auto cut_with = [&](NodeId other) {
-        return cut ? graph_.make(Op::Max, {cut, other}) : other;
-    };
+    const auto both = [&](NodeId a, NodeId b) { return a ? graph_.make(Op::Max, {a, b}) : b; };
     const bool opens = s.kind == ShapeKind::Union || is_transparent(s, shapes_);
     const auto has_bounds = [&](ShapeId child) { return fact(child).bounds.finite(); };
     const bool bounded = box.finite() && frame.p == p3_;
     if (bounded && !(opens && std::ranges::all_of(s.children, has_bounds))) {
-        scene_.framed_bounded.push_back({cut_with(distance(id)), box});
+        scene_.framed_bounded.push_back({both(cut, distance(id)), box});
         return;
     }
     const bool endless = !box.finite() && framed_opened_ < max_found;
@@ -70,13 +68,12 @@ void Lowering::find_framed(ShapeId id, Framing in, std::vector<NodeId> &alone) {
         Framing rest = in;
         for (ShapeId child : s.children) {
             if (has_parts(child)) continue;
-            const NodeId other = distance(child);
-            rest.cut = rest.cut ? graph_.make(Op::Max, {rest.cut, other}) : other;
+            rest.cut = both(rest.cut, distance(child));
         }
         find_framed(*std::ranges::find_if(s.children, parts), rest, alone);
         return;
     }
-    alone.push_back(cut_with(distance(id)));
+    alone.push_back(both(cut, distance(id)));
 }
 
 void Lowering::add_framed(Where frame) {
