@@ -1,5 +1,6 @@
-// See solid_box.h. A side of the box is found by branch and bound: the cell that reaches farthest
-// is divided until one of its points is known to be solid, or it is smaller than what matters.
+// See solid_box.h. A side of the box is found by branch and bound: what lies beyond a plane is divided
+// until all of it is known to be free, one of its points to be solid, or a cell is too small to
+// matter.
 #include "backend-cpu/prune/solid_box.h"
 
 #include "backend-cpu/prune/shorten.h"
@@ -15,8 +16,8 @@ using ir::Box;
 
 constexpr std::size_t cells_a_run = 8; // divided at once: 4 children each, with their middles
 constexpr double first_share = 1.0 / 16, last_share = 1.0 / 512; // of the diagonal: how exactly
-constexpr double max_work = 100'000;                             // kernels over a run of boxes
-constexpr int min_runs = 32, max_runs = 400;                     // a side
+constexpr double max_work = 800'000;                             // kernels over a run of boxes
+constexpr int min_runs = 32, max_runs = 3200;                    // a side
 constexpr int max_rounds = 24;
 
 double diagonal(const Box &box) {
@@ -42,27 +43,28 @@ std::array<double, 3> middle(const Box &box) {
     return m;
 }
 
-// The halves of a box, in order to know where the solid ends along an axis: along that one until
-// they are thin, for what is flat there is decided by thin slabs at once; else along the others. A
-// slab gets narrower as the cube root of how thin it is, both as shares of the domain.
-void divide(const Box &box, const Box &domain, std::size_t axis, double fine,
-            std::vector<Box> &into) {
-    const auto width = [](const Box &of, std::size_t i) { return of.hi[i] - of.lo[i]; };
-    const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
-    const double across = std::max(width(box, b), width(box, c));
-    const double share = across / std::max({width(domain, b), width(domain, c), 1e-300});
-    const double thin = width(box, axis);
-    const bool along = thin > fine && thin > width(domain, axis) * share * share * share;
-    const std::array<double, 3> cut = middle(box);
+void cut(std::vector<Box> &boxes, std::size_t from, std::size_t axis, double at) {
+    for (std::size_t k = from, end = boxes.size(); k < end; ++k) {
+        boxes.push_back(boxes[k]);
+        boxes[k].hi[axis] = boxes.back().lo[axis] = at;
+    }
+}
+
+// Cut by the plane where that is in it, so that what is flat there is decided by slabs at once; else
+// in the middle along its longest side, and along the next where that is not much shorter.
+void divide(const Box &box, std::size_t axis, double plane, std::vector<Box> &into) {
     const std::size_t first = into.size();
     into.push_back(box);
-    for (std::size_t i = 0; i < 3; ++i) {
-        if ((i == axis) != along || (!along && width(box, i) < across / 2)) continue;
-        for (std::size_t k = first, end = into.size(); k < end; ++k) {
-            into.push_back(into[k]);
-            into[k].hi[i] = into.back().lo[i] = cut[i];
-        }
+    if (box.lo[axis] < plane && plane < box.hi[axis]) {
+        cut(into, first, axis, plane);
+        return;
     }
+    std::array<std::size_t, 3> order{0, 1, 2};
+    const auto width = [&](std::size_t i) { return box.hi[i] - box.lo[i]; };
+    std::ranges::stable_sort(order, std::ranges::greater{}, width);
+    const std::array<double, 3> at = middle(box);
+    cut(into, first, order[0], at[order[0]]);
+    if (width(order[1]) > 0.6 * width(order[0])) cut(into, first, order[1], at[order[1]]);
 }
 
 struct Search {
@@ -70,14 +72,14 @@ struct Search {
     Shortener shortener;
     ShortTape whole;
     Boxes boxes;
-    double a_box = 0; // operations for a box, with loops counted out
-    double &work;     // how many are left
-    int runs = 0;     // allowed for a side
+    double a_box = 0;  // operations for a box, with loops counted out
+    double &work;      // how many are left
+    int most_runs = 0; // for a side
 
     Search(const PruneProgram &p, double operations, double &left)
         : parts(p), shortener(p), whole(whole_tape(p)), a_box(operations), work(left) {
-        runs = std::clamp(static_cast<int>(max_work / (6 * std::max(whole.cost, 1.0f))), min_runs,
-                          max_runs);
+        most_runs = std::clamp(static_cast<int>(max_work / (6 * std::max(whole.cost, 1.0f))),
+                               min_runs, max_runs);
     }
 
     void put(std::size_t at, const std::array<double, 3> &lo, const std::array<double, 3> &hi) {
@@ -88,59 +90,79 @@ struct Search {
     }
 
     // How far along an axis, up or down, the solid in `domain` reaches, no more than `fine` too
-    // far; none: there is no solid.
+    // far; none: there is no solid. Halves what may be, for it takes the less to see that a part is
+    // free the farther that is from the solid.
     std::optional<double> side(const Box &domain, std::size_t axis, bool up, double fine) {
         struct Cell {
             Box box;
-            double far = 0;
+            double value = 0; // at its middle
             std::size_t number = 0;
         };
         const auto far_of = [&](const Box &box) { return up ? box.hi[axis] : -box.lo[axis]; };
-        // The farthest first; of those the smallest, then the newest.
+        // The nearest to a solid first, then the newest.
         const auto later = [](const Cell &a, const Cell &b) {
-            if (a.far != b.far) return a.far < b.far;
-            const double x = longest(a.box), y = longest(b.box);
-            return x != y ? x > y : a.number < b.number;
+            return a.value != b.value ? a.value > b.value : a.number < b.number;
         };
-        std::vector<Cell> heap{{domain, far_of(domain), 0}};
+        constexpr double nowhere = -std::numeric_limits<double>::infinity();
+        std::vector<Cell> cells{{domain, 0, 0}}, aside; // a heap; and those that end before `plane`
         std::size_t made = 1;
-        double known = -std::numeric_limits<double>::infinity(); // a solid point is there
+        double known = nowhere, far = far_of(domain);
         std::vector<Box> children;
-        for (int run = 0; !heap.empty(); ++run) {
-            const Cell &top = heap.front();
-            if (work < 16 * a_box) work = 0;
-            if (run == runs || work <= 0 || top.far <= known + fine || longest(top.box) <= fine)
-                return up ? top.far : -top.far;
-            children.clear();
-            for (std::size_t k = 0; k < cells_a_run && !heap.empty(); ++k) {
-                std::pop_heap(heap.begin(), heap.end(), later);
-                divide(heap.back().box, domain, axis, fine, children);
-                heap.pop_back();
+        int runs = 0;
+        while (far > known + fine) {
+            const double plane =
+                known == nowhere ? nowhere : std::max(0.5 * (known + far), known + 0.5 * fine);
+            const auto ends_before = [&](const Cell &cell) { return far_of(cell.box) <= plane; };
+            const auto again = std::stable_partition(aside.begin(), aside.end(), ends_before);
+            for (auto cell = again; cell != aside.end(); ++cell) {
+                cells.push_back(*cell);
+                std::push_heap(cells.begin(), cells.end(), later);
             }
-            const std::size_t count = children.size(), padded = (2 * count + 15) / 16 * 16;
-            for (std::size_t k = 0; k < padded; ++k) {
-                const Box &child = children[std::min(k % count, count - 1)];
-                if (k < count)
-                    put(k, child.lo, child.hi);
-                else
-                    put(k, middle(child), middle(child));
+            aside.erase(again, aside.end());
+            const double before = known;
+            while (!cells.empty() && known == before) {
+                children.clear();
+                for (std::size_t k = 0; k < cells_a_run && !cells.empty();) {
+                    std::pop_heap(cells.begin(), cells.end(), later);
+                    if (ends_before(cells.back()))
+                        aside.push_back(cells.back());
+                    else
+                        divide(cells.back().box, axis, up ? plane : -plane, children), ++k;
+                    cells.pop_back();
+                }
+                if (children.empty()) break;
+                if (work < 16 * a_box) work = 0;
+                if (runs++ == most_runs || work <= 0) return up ? far : -far;
+                const std::size_t count = children.size(), padded = (2 * count + 15) / 16 * 16;
+                for (std::size_t k = 0; k < padded; ++k) {
+                    const Box &child = children[std::min(k % count, count - 1)];
+                    if (k < count)
+                        put(k, child.lo, child.hi);
+                    else
+                        put(k, middle(child), middle(child));
+                }
+                boxes.count = padded;
+                work -= a_box * static_cast<double>(padded);
+                run_values(parts, shortener, whole.selection(parts), boxes);
+                for (std::size_t k = 0; k < count; ++k) {
+                    const double end = far_of(children[k]), at = middle(children[k])[axis];
+                    // Nothing solid by its range, or by the step that is safe from its middle.
+                    const double value = shortener.result_lo[count + k];
+                    if (shortener.result_lo[k] > 0 || value > reach(children[k])) continue;
+                    // All of it is, or it is too small to matter.
+                    if (shortener.result_hi[k] <= 0 || longest(children[k]) <= 0.5 * fine)
+                        known = std::max(known, end);
+                    else if (shortener.result_hi[count + k] <= 0)
+                        known = std::max(known, up ? at : -at);
+                    cells.push_back({children[k], value, made++});
+                    std::push_heap(cells.begin(), cells.end(), later);
+                }
             }
-            boxes.count = padded;
-            work -= a_box * static_cast<double>(padded);
-            run_values(parts, shortener, whole.selection(parts), boxes);
-            for (std::size_t k = 0; k < count; ++k) {
-                const double far = far_of(children[k]), at = middle(children[k])[axis];
-                // Nothing solid by its range, or by the step that is safe from its middle.
-                if (shortener.result_lo[k] > 0 ||
-                    shortener.result_lo[count + k] > reach(children[k]))
-                    continue;
-                if (shortener.result_hi[k] <= 0) known = std::max(known, far);
-                if (shortener.result_hi[count + k] <= 0) known = std::max(known, up ? at : -at);
-                heap.push_back({children[k], far, made++});
-                std::push_heap(heap.begin(), heap.end(), later);
-            }
+            if (known != before) continue;
+            if (known == nowhere) return std::nullopt;
+            far = plane;
         }
-        return std::nullopt;
+        return up ? far : -far;
     }
 };
 
@@ -162,8 +184,9 @@ ir::Box solid_box(const ir::Scene &scene, ir::FunctionId distance, const ir::Box
                 if (!found) return {};
                 (up ? box.hi : box.lo)[axis] = *found;
             }
-        if (share == last_share) break;
-        if (round + 2 >= max_rounds || diagonal(box) > 0.8 * before) share = last_share;
+        const bool stays = diagonal(box) > 0.8 * before;
+        if (share == last_share && stays) break;
+        if (stays) share = last_share;
     }
     return box;
 }
