@@ -61,7 +61,9 @@
 //   Out of way: a miss.
 //
 //   REFINED: x is where the chord between the ends is 0. If the last step aims and x is at most
-//   refined*tolerance from t - tolerance/4, where it aimed at, the ray lands at x. Else, at most
+//   refined*tolerance from t - tolerance/4, where it aimed at, f(x - tolerance/4) takes the place of
+//   the end with its sign, and the ray lands at x where that is above 0: else something lies before,
+//   as the wall does before the floor that is under it, too. In all other cases, at most
 //   `refinements` times: f(x) takes the place of the end with its sign (and where one end stays twice
 //   in a row, its value counts half: the Illinois rule), x is found anew, and where it moved by at
 //   most refined*tolerance, or the ends are as near, the ray lands there. So where a ray lands does not

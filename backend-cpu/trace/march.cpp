@@ -144,10 +144,17 @@ void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> 
     std::vector<float> at(crossings.size());
     std::vector<char> kept(crossings.size()); // the end that stayed last: 0 none, 1 a, 2 b
     for (std::size_t i = 0; i < crossings.size(); ++i) at[i] = chord(crossings[i]);
+    std::vector<float> aimed(crossings.size(),
+                             -1); // where it lands if what is before it is outside
     std::erase_if(active, [&](std::size_t i) {
-        const float tolerance = lengths.tolerance(at[i]);
-        return crossings[i].aimed && std::fabs(at[i] - (crossings[i].b - 0.25f * tolerance)) <=
-                                         shading::refined * tolerance;
+        const float tolerance = lengths.tolerance(at[i]), quarter = 0.25f * tolerance;
+        if (!crossings[i].aimed ||
+            std::fabs(at[i] - (crossings[i].b - quarter)) > shading::refined * tolerance)
+            return false;
+        if (!(at[i] - quarter > crossings[i].a)) return true;
+        aimed[i] = at[i];
+        at[i] -= quarter;
+        return false;
     });
     for (int turn = 0; turn < shading::refinements; ++turn) {
         std::erase_if(active, [&](std::size_t i) {
@@ -173,6 +180,11 @@ void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> 
         std::erase_if(active, [&](std::size_t i) {
             const float last = at[i];
             at[i] = chord(crossings[i]);
+            if (aimed[i] >= 0 && kept[i] == 2) {
+                at[i] = aimed[i];
+                return true;
+            }
+            aimed[i] = -1;
             return std::fabs(at[i] - last) <= shading::refined * lengths.tolerance(last);
         });
     }

@@ -153,6 +153,7 @@ $end
     int phase = 0; // 0: it marches; 1: the place of the hit is refined
     int count = 0; // of refinements
     int stays = 0; // which end of the chord stayed: 1 a, 2 b
+    float aimed = -1.0; // where the ray lands if what is before it is outside
     float a = 0.0, b = 0.0, at_a = 0.0, at_b = 0.0;
     float d = 0.0;
 $if HAS_SAFE_RADIUS
@@ -295,8 +296,17 @@ $include march_ahead
         float x = mix(b, a + (b - a) * (at_a / max(at_a - at_b, 1e-30)), b > a);
         tolerance = fathom_tolerance(mix(x, t, count > 0));
         float near = $REFINED * tolerance;
-        bool there = count > 0 && (count == $REFINEMENTS || abs(x - t) <= near) ||
-                     count == 0 && aims && abs(x - b + 0.25 * tolerance) <= near;
+        bool there = count > 0 && (count == $REFINEMENTS || abs(x - t) <= near);
+        if (aimed >= 0.0) {
+            there = stays == 2;
+            x = mix(x, aimed, there);
+            aimed = -1.0;
+        }
+        if (count == 0 && aims && abs(x - b + 0.25 * tolerance) <= near) {
+            there = !(x - 0.25 * tolerance > a);
+            aimed = mix(x, -1.0, there);
+            x = mix(x - 0.25 * tolerance, x, there);
+        }
         t = x;
         if (there || !(b - a > $REFINED * fathom_tolerance(x))) {
             fathom_end = 1;
