@@ -55,6 +55,10 @@ struct ShapeFact {
     double lipschitz_sup =
         1; // its largest value over all params and times; infinity where the proof failed
     Box bounds = Box::everything(); // holds the solid, for all params and times
+    Box bounded; // the hull of the boxes of its parts that have an end: tells a scene's size alone
+    // How steep the raw field is where the solid ends, as a power of 2, at least 1; of several parts
+    // that of the least steep. Sampled; nothing that is proved rests on it.
+    double surface_slope = 1;
     std::array<bool, 3> symmetric{};
     std::array<double, 3> moment_arm{}; // sup |(p x grad f)_axis| over space; infinity: unknown
     double outward = std::numeric_limits<double>::infinity(); // Displace: the most by which it
@@ -248,6 +252,7 @@ struct Scene {
     Rounding rounding;              // filled after lowering
     std::vector<Axiom> axioms;      // each once; filled by the analysis
     Box bounds;                     // of the finite top-level parts; empty when there are none
+    Box extent;                     // of all parts that have an end, those of endless shapes too
     double far = 0;                 // a far limit for rays
 
     // What a view without a camera frames: the box of the solid itself at the params' present

@@ -129,6 +129,24 @@ std::array<double, 16> value_of(const Scene &scene, NodeId id, double time) {
     return Evaluator(scene, time).value(id).value;
 }
 
+void find_extent(Scene &scene) {
+    scene.bounds = scene.extent = Box{};
+    for (const TopLevel &part : scene.top_level) {
+        const ShapeFact &fact = scene.facts[part.shape.index];
+        if (fact.bounds.finite()) scene.bounds = hull(scene.bounds, fact.bounds);
+        scene.extent = hull(scene.extent, fact.bounded);
+    }
+    if (scene.render.far > 0) {
+        scene.far = scene.render.far;
+        return;
+    }
+    const auto [center, radius] = sphere_of(scene.extent);
+    // Without a camera the framing stands where 45 degrees hold the parts.
+    double distance = radius / std::sin(default_fov / 2);
+    if (scene.camera.given) distance = glm::length(triple_of(scene, scene.camera.at, 0) - center);
+    scene.far = 100 * std::max(radius, distance);
+}
+
 View look_at(glm::dvec3 position, glm::dvec3 target, double extent, bool orthographic) {
     View view;
     view.origin = position;
@@ -180,7 +198,7 @@ View frame_sphere(View view, glm::dvec3 center, double radius, double aspect) {
 View view_of(const Scene &scene, double time, double aspect) {
     const Camera &camera = scene.camera;
     if (!camera.given) {
-        const auto [center, radius] = sphere_of(scene.framed.empty() ? scene.bounds : scene.framed);
+        const auto [center, radius] = sphere_of(scene.framed.empty() ? scene.extent : scene.framed);
         const View from = look_at(center + glm::dvec3(3, 2, 5), center, std::tan(default_fov / 2),
                                   camera.orthographic);
         return frame_sphere(from, center, radius, aspect);
@@ -204,7 +222,7 @@ std::array<double, 2> sample_offset(int k) {
 
 Frame frame_of(const Scene &scene, const View &view, int height) {
     Frame frame;
-    const auto [center, radius] = sphere_of(scene.bounds);
+    const auto [center, radius] = sphere_of(scene.extent);
     frame.center = center;
     frame.radius = radius;
     frame.occlusion_reach =

@@ -25,6 +25,9 @@ std::array<double, 16> value_of(const Scene &scene, NodeId id, double time);
 // From `position` towards `target`; up is y, or, looking along it, minus z (z when looking up).
 View look_at(glm::dvec3 position, glm::dvec3 target, double extent, bool orthographic);
 
+// Sets Scene::bounds, extent and far from what is known of its shapes, at the time 0.
+void find_extent(Scene &scene);
+
 // The scene's camera, or the rule of semantics.md, 23: from [3, 2, 5]'s direction, framing the
 // sphere about Scene::framed, 45 degrees. `aspect`: width / height.
 View view_of(const Scene &scene, double time, double aspect);

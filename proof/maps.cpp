@@ -63,6 +63,7 @@ Derived Prover::know_translate(ShapeId id, Derived k) {
     Vec by = vector(shape.args[2]);
     if (flat) by[2] = 0.0;
     k.fact.bounds = moved(k.fact.bounds, by);
+    k.fact.bounded = moved(k.fact.bounded, by);
     k.outer = moved(k.outer, by);
     k.parts = moved(k.parts, by);
     for (int a = 0; a < 3; ++a) {
@@ -83,6 +84,7 @@ Derived Prover::know_rotate(ShapeId id, Derived k) {
     auto matrix = numbers(shape.args[2]);
     int side = flat ? 2 : 3;
     k.fact.bounds = turned(k.fact.bounds, matrix, side);
+    k.fact.bounded = turned(k.fact.bounded, matrix, side);
     k.outer = everywhere(k.outer) ? k.outer : turned(k.outer, matrix, side);
     k.parts = everywhere(k.parts) ? k.parts : turned(k.parts, matrix, side);
     auto n = static_cast<std::size_t>(side);
@@ -135,6 +137,7 @@ Derived Prover::know_scale(ShapeId id, Derived k) {
     if (flat) by[2] = 1.0;
     k.lowered = up(k.lowered * most), k.short_by = up(k.short_by * most);
     k.fact.bounds = times(k.fact.bounds, by);
+    k.fact.bounded = times(k.fact.bounded, by);
     k.outer = everywhere(k.outer) ? k.outer : times(k.outer, by);
     if (uniform) {
         k.parts = everywhere(k.parts) ? k.parts : times(k.parts, by);

@@ -158,7 +158,8 @@ struct Prover {
     Interval own_values(ir::ShapeId id, const Cell &cell, int depth); // as if proved everywhere
     double magnitude(ir::ShapeId id, const Box &box);
     Box extent(ir::ShapeId id); // holds the solid, wherever its field's values say so
-    void find_extent(ir::ShapeId id, Derived &k); // sets the box of what has none
+    void find_extent(ir::ShapeId id, Derived &k);           // sets the box of what has none
+    double surface_slope(ir::ShapeId id, const Derived &k); // see ir::ShapeFact
 
     // The raw field as one expression in Point, where the shape is made of leaves, maps, min and
     // max; else nothing.

@@ -38,6 +38,8 @@ void weigh(Derived &k, const Derived &c) {
 
 void inherit(Derived &k, const Derived &c) {
     k.failed = k.failed || c.failed;
+    k.fact.surface_slope = std::min(k.fact.surface_slope, c.fact.surface_slope);
+    k.fact.bounded = ir::hull(k.fact.bounded, c.fact.bounded);
     k.fact.status = std::max(k.fact.status, c.fact.status);
     k.parts = ir::hull(k.parts, c.parts);
     k.offset_slack = std::max(k.offset_slack, c.offset_slack);

@@ -89,9 +89,11 @@ void Prover::run() {
             k = know(ShapeId{i});
             if (!is_field(ShapeId{i})) k.leaf = {};
             find_extent(ShapeId{i}, k);
+            k.fact.surface_slope = surface_slope(ShapeId{i}, k);
             keep_in_ball(ShapeId{i}, k);
             k.fact.curvature = curvature_of(ShapeId{i}, k);
             finish(ShapeId{i}, k);
+            if (k.fact.bounds.finite()) k.fact.bounded = k.fact.bounds;
         }
         if (places[i].reached) {
             known[i] = static_cast<std::uint32_t>(derived.size());
@@ -102,30 +104,7 @@ void Prover::run() {
         scene.facts[i].repeat.copy = padded(k.fact.repeat.copy);
     }
     name_axioms();
-    scene.bounds = {};
-    double radius = 0;
-    for (const ir::TopLevel &top : scene.top_level) {
-        const Box &box = scene.facts[top.shape.index].bounds;
-        if (box.finite() && !box.empty()) scene.bounds = ir::hull(scene.bounds, box);
-    }
-    std::array<double, 3> centre{};
-    if (!scene.bounds.empty()) {
-        double sum = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            centre[i] = (scene.bounds.lo[i] + scene.bounds.hi[i]) / 2;
-            sum += std::pow((scene.bounds.hi[i] - scene.bounds.lo[i]) / 2, 2);
-        }
-        radius = std::sqrt(sum);
-    }
-    // semantics.md, 23. Without a camera the framing stands at radius / sin(45 degrees / 2).
-    double distance = radius / 0.3826834323650898;
-    if (scene.camera.given) {
-        auto at = ir::value_of(scene, scene.camera.at, 0);
-        distance = std::sqrt(std::pow(at[0] - centre[0], 2) + std::pow(at[1] - centre[1], 2) +
-                             std::pow(at[2] - centre[2], 2));
-    }
-    scene.far = scene.render.far > 0 ? scene.render.far : 100 * std::max({radius, distance, 1e-6});
-    if (scene.bounds.empty() && scene.render.far <= 0) scene.far = std::max(scene.far, 100.0);
+    ir::find_extent(scene);
     know_cells();
 }
 

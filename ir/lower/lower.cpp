@@ -2,6 +2,7 @@
 // evaluated.
 #include "ir/lower/lowering.h"
 #include "ir/passes/walk.h"
+#include "ir/view.h"
 
 #include <algorithm>
 #include <cassert>
@@ -122,7 +123,7 @@ void Lowering::run() {
         {graph_.make(Op::Direction, Type::Vec3, std::span<const NodeId>{}), direction}};
     scene_.background_function =
         graph_.add_function({"background", {}, {direction}, substitute(graph_, background, map)});
-    find_bounds();
+    find_extent(scene_);
 }
 
 // -- what is known before
@@ -343,35 +344,6 @@ void Lowering::add_endless(Where frame) {
         {"scene_endless", {}, {p3_}, graph_.make(Op::Union, Type::Float, distances)});
     scene_.endless_hit = graph_.add_function(
         {"scene_endless_hit", {}, {p3_}, graph_.make(Op::NearestHit, Type::Hit, hits)});
-}
-
-// -- the scene's extent (semantics.md, 23)
-
-void Lowering::find_bounds() {
-    scene_.bounds = Box{};
-    for (const TopLevel &part : scene_.top_level) {
-        const Box &box = fact(part.shape).bounds;
-        if (!box.empty() && box.finite()) scene_.bounds = hull(scene_.bounds, box);
-    }
-    double radius = 1;
-    std::array<double, 3> middle{};
-    if (!scene_.bounds.empty()) {
-        double squares = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            middle[i] = (scene_.bounds.lo[i] + scene_.bounds.hi[i]) / 2;
-            squares += std::pow((scene_.bounds.hi[i] - scene_.bounds.lo[i]) / 2, 2);
-        }
-        radius = std::sqrt(squares);
-    }
-    // The camera's distance where it is known now; else that from which 45 degrees frame the parts.
-    double distance = radius / std::sin(std::atan(1.0) / 2);
-    if (scene_.camera.given && scene_.camera.at && graph_.is_constant(scene_.camera.at)) {
-        double squares = 0;
-        const Constant &at = graph_.constant_of(scene_.camera.at);
-        for (std::size_t i = 0; i < 3; ++i) squares += std::pow(at.value[i] - middle[i], 2);
-        distance = std::sqrt(squares);
-    }
-    scene_.far = scene_.render.far > 0 ? scene_.render.far : 100 * std::max(radius, distance);
 }
 
 } // namespace fathom::ir

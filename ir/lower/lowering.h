@@ -153,7 +153,6 @@ class Lowering {
         NodeId factor, cut;
     };
     void find_framed(ShapeId id, Framing in, std::vector<NodeId> &alone);
-    void find_bounds();
 
     const Shape &shape(ShapeId id) const { return shapes_[id]; }
     const ShapeFact &fact(ShapeId id) const { return scene_.facts[id.index]; }

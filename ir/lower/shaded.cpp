@@ -63,6 +63,7 @@ bool Lowering::may_have_films() const {
 NodeId Lowering::shaded(ShapeId id, NodeId raw) {
     const ShapeFact &known = fact(id);
     if (!has_slope_above_one(id)) return divided(id, raw);
+    if (known.surface_slope > 1) return graph_.div(raw, graph_.number(known.surface_slope));
     if (!known.lipschitz || graph_.is_constant(known.lipschitz)) return raw;
     const NodeId bound = graph_.make(Op::Max, {known.lipschitz, graph_.number(1e-6)});
     return graph_.div(raw, graph_.make(Op::Min, {bound, graph_.number(1)}));

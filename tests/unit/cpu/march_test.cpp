@@ -35,7 +35,7 @@ struct OneBall : Fields {
         scene.lighting.shadow_darkness = g.number(1);
         scene.lighting.soft_shadows = g.number(0.02);
         scene.lighting.specular_intensity = g.number(0);
-        scene.bounds = {{-1, -1, -1}, {1, 1, 1}};
+        scene.bounds = scene.extent = {{-1, -1, -1}, {1, 1, 1}};
     }
     NodeId make_distance() { return ball(0, 0, 0, 1); }
     View view() { return look_at({0, 0, 4}, {0, 0, 0}, 0.5, false); }

@@ -42,7 +42,7 @@ inline void add_appearance(Scene &scene, int paints, Box bounds) {
     scene.lighting.shadow_darkness = g.number(0.5);
     scene.lighting.soft_shadows = g.number(0.03);
     scene.lighting.specular_intensity = g.number(0.4);
-    scene.bounds = bounds;
+    scene.bounds = scene.extent = bounds;
     ShapeFact fact;
     fact.bounds = bounds;
     Shape leaf;

@@ -37,7 +37,7 @@ TEST_CASE("a view is a right-handed frame, also straight up and down") {
 TEST_CASE(
     "without a camera the finite parts' bounding sphere just fits, in wide and in tall pictures") {
     Scene scene = sphere();
-    scene.bounds = {{1, 2, 3}, {3, 4, 5}};
+    scene.bounds = scene.extent = {{1, 2, 3}, {3, 4, 5}};
     const double radius = std::sqrt(3.0);
     for (double aspect : {0.5, 1.0, 2.0})
         for (bool orthographic : {false, true}) {
