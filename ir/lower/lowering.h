@@ -63,6 +63,8 @@ class Lowering {
 
     // -- what is looked at (shaded.cpp)
     bool has_slope_above_one(ShapeId id) const;
+    bool is_stretched(ShapeId id) const;
+    NodeId stretched(ShapeId id, Where frame);
     void find_shaded();
     bool may_have_films() const;
     NodeId shaded(ShapeId id, NodeId raw);

@@ -116,6 +116,8 @@ NodeId Lowering::unmarked(Reading reading, ShapeId id, Where frame) {
     if (reading == Reading::Hit)
         return graph_.make(Op::HitWith,
                            {colored(id, frame), expression_of(Reading::Marched, id, frame)});
+    if (reading == Reading::Shaded && is_stretched(id))
+        return guarded(reading, id, frame, stretched(id, frame));
     if (reading == Reading::Shaded)
         return guarded(reading, id, frame, shaded(id, expression_of(Reading::Raw, id, frame)));
     if (has_cells(id)) return marched_in_box(id, frame);
