@@ -300,6 +300,9 @@ class Builder {
     std::string lisp_value(Index &at) const;
     std::string lisp_part(Index at, Index end) const;
     std::string lisp_form(Index open) const;
+    std::string lisp_thread(Index open) const;
+    std::string lisp_function(Index open) const;
+    bool lisp_arrow(Index at);
     bool lisp_binding(Index open);
     bool lisp_call(Index at);
     bool lisp_let(Index open);
@@ -319,6 +322,33 @@ class Builder {
     bool applied_without_dot(Index at);
     void enumeration(Index first);
     std::vector<Edit> further_names(Index first, Index from);
+
+    // Calls by a space (foreign_spaced.cpp); `apart` becomes true where there is one.
+    std::string spaced_row(Index first, Index past, bool &apart) const;
+    std::string spaced_atom(Index &at, Index past, bool &apart) const;
+    std::string spaced_call(Index &at, Index past, bool &apart) const;
+    std::string spaced_value(Index first, Index past, bool &apart) const;
+    bool spaced_statement(Index at);
+    bool holds_comma(Index open) const;
+
+    // Whether all words may be looked at for one report: not where there are many reports.
+    bool may_look_far() const {
+        constexpr std::size_t most_reports = 100;
+        return diagnostics_.items().size() < most_reports;
+    }
+    bool bars_of_amount(Index at);
+    bool keyword_as_name(Index at);
+    bool tried_block(Index first);
+    bool loop_of_tuple(Index open, Diagnostic &d);
+    bool head_of_loop(Index at);
+    std::string loop_of_parts(Index open, std::string list, std::string &lets) const;
+    std::unordered_set<Index> renamed_; // keywords that an edit makes names of
+
+    // Records of theirs (foreign_records.cpp).
+    bool foreign_struct(Index first);
+    bool named_record(Index brace);
+    bool called_record(Index made);
+    bool parameters_in_braces(Index brace);
 
     // Operators of theirs, and what is missing beside one (foreign_operators.cpp).
     bool touch(Index first, Index second) const; // with nothing between

@@ -135,8 +135,9 @@ void Builder::param(Index first, Index last) {
                 return std::string(text(ast_.exprs[id].span.begin, ast_.exprs[id].span.end));
             };
             const std::string ends = written(*param.low) + ".." + written(*param.high);
-            foreign(span(*range), "a parameter's range is written `low..high`")
-                .help("write " + in_code(ends), {{span(*range), ends}});
+            if (!std::holds_alternative<String>(ast_.exprs[*param.low].kind)) // told by its type
+                foreign(span(*range), "a parameter's range is written `low..high`")
+                    .help("write " + in_code(ends), {{span(*range), ends}});
         } else if (!std::holds_alternative<Poison>(expr.kind)) {
             diagnostics_
                 .add(Code::SyntaxError, span(*range), "a parameter's range is written `low..high`")
@@ -269,6 +270,8 @@ void Builder::assignment() {
         d.note("a target is a `var`, or a component of one");
         if (std::holds_alternative<Member>(ast_.exprs[target.id].kind))
             d.help("nothing that is made changes: give the call other arguments");
+        else if (std::holds_alternative<List>(ast_.exprs[target.id].kind))
+            d.help("each name is bound by a `let` of its own: `let a2 = b; let b2 = a`");
         else if (kind(at) == Tok::Assign)
             d.help("a comparison is written `==`", {{span(at), "=="}});
         add_stmt(Bad{}, whole, 1);

@@ -66,6 +66,7 @@ bool Builder::already_reported(Wanted wanted, Index at) const {
         return token(i).begin == token(i).end && kind(i) != Tok::End;
     };
     if (at < tokens_.tokens.size() && (kind(at) == Tok::Bad || is_virtual(at))) return true;
+    if (renamed_.contains(at)) return true;
     if (at > 0 && kind(at - 1) == Tok::Bad && kind(at) != Tok::Comma && kind(at) != Tok::End)
         return true;
     if (wanted != Wanted::CloseParen && wanted != Wanted::CloseList) return false;

@@ -76,7 +76,8 @@ void Builder::settle_foreign_names() {
             expr.kind = Bool{value};
         } else if (std::holds_alternative<Name>(expr.kind)) {
             foreign(foreign_name.span, "there is no " + in_code(name) + ": every name has a value")
-                .note("the shape that is nowhere is `empty`, the list without items `[]`");
+                .help("leave what asks for it away; the shape that is nowhere is `empty`, the list "
+                      "without items `[]`");
             expr.kind = Poison{};
         }
     }
@@ -194,10 +195,20 @@ bool Builder::foreign_loop(Index at) {
         d.help("write `for " + head + " { … }`", std::move(edits));
         return true;
     };
+    if (kind(close + 1) == Tok::In && kind(at + 2) == Tok::Comma) return loop_of_tuple(at, d);
     Index i = at + 1;
     while (kind(i) == Tok::Let || kind(i) == Tok::Var ||
+           (kind(i) == Tok::Name && text(i) == "const") ||
            (kind(i) == Tok::Name && kind(i + 1) == Tok::Name && text(i + 1) != "of"))
         ++i;
+    if (is_one_of(kind(i), {Tok::ListOpen, Tok::FreshListOpen, Tok::Open})) { // `[i, r] of l`
+        std::string lets, head = loop_of_parts(i, inside(match(i) + 2, close), lets);
+        if (head.empty()) return true;
+        propose(head);
+        const Index body = match(close + 1) > close + 1 ? close + 2 : close + 1;
+        if (d.fix) d.fix->edits.push_back({{id_, token(body).begin, token(body).begin}, lets});
+        return true;
+    }
     if (kind(i) == Tok::Name && kind(i + 1) == Tok::Name && text(i + 1) == "of")
         return propose(std::string(text(i)) + " in " + inside(i + 2, close));
     if (kind(i) == Tok::Name && kind(i + 1) == Tok::In) return propose(inside(i, close));
@@ -379,7 +390,8 @@ bool Builder::foreign_junk(Index first, Index at) {
                 {{id_, token(last).end, token(last).end}, ")"}});
         return true;
     }
-    return applied_without_dot(at) || juxtaposed_arguments(at) || junk_by_sign(first, at);
+    return applied_without_dot(at) || spaced_statement(at) || juxtaposed_arguments(at) ||
+           junk_by_sign(first, at);
 }
 
 // The same by the sign, or the keyword, that should not stand there.

@@ -100,7 +100,7 @@ bool Builder::juxtaposed_calls(Index first, Index at) {
                         kind(shape + 1) == Tok::Open && kind(match(shape + 1) + 1) == Tok::Name;
          ++links) {
         const Index close = match(shape + 1);
-        chain.insert(0, "." + transform_text(shape));
+        if (text(shape) != "render") chain.insert(0, "." + transform_text(shape)); // draws the same
         shape = close + 1;
     }
     if (shape < at) return false;
@@ -132,7 +132,17 @@ bool Builder::foreign_lambda(Index at) {
 
 // `45 deg`, `5 mm`.
 bool Builder::separated_unit(Index at) {
-    if (at == 0 || kind(at) != Tok::Name || kind(at - 1) != Tok::Number) return false;
+    if (at == 0 || kind(at) != Tok::Name) return false;
+    if ((text(at) == "deg" || is_degree_word(text(at))) && kind(at - 1) == Tok::Name &&
+        !token(at).first_on_line && !is_declared(std::string(text(at)))) { // `a deg`
+        const bool whole = at > 1 && kind(at - 2) != Tok::Dot;
+        const std::string written = "radians(" + std::string(text(at - 1)) + ")";
+        foreign(span(at - 1, at), "a unit touches a number; what a name holds is converted")
+            .help("write " + in_code(whole ? written : "radians(…)"),
+                  whole ? std::vector<Edit>{{span(at - 1, at), written}} : std::vector<Edit>{});
+        return true;
+    }
+    if (kind(at - 1) != Tok::Number) return false;
     const std::string_view unit = text(at);
     if (is_length_unit(unit) && !is_declared(std::string(unit))) {
         diagnostics_

@@ -460,8 +460,18 @@ bool Builder::foreign_binding(Index at) {
         !recursive && type_named(text(before)) == TypeName::Unknown) {
         const std::string name = std::string(text(before)) + "_" + std::string(text(at));
         lost_.push_back(at);
+        std::vector<Edit> edits{{span(before, at), name}};
+        constexpr std::size_t most_edits = 20;
+        for (Index i = at + 1;
+             may_look_far() && i + 1 < tokens_.tokens.size() && edits.size() < most_edits; ++i) {
+            const bool same = kind(i) == Tok::Name && kind(i + 1) == Tok::Name &&
+                              text(i) == text(before) && text(i + 1) == text(at);
+            if (!same) continue;
+            edits.push_back({span(i, i + 1), name});
+            renamed_.insert(i + 1);
+        }
         foreign(span(before, at), "a name is one word")
-            .help("write " + in_code(name), {{span(before, at), name}});
+            .help("write " + in_code(name), std::move(edits));
         return true;
     }
     const bool typed = is_type_word(text(before)) || type_named(text(before)) != TypeName::Unknown;

@@ -32,7 +32,8 @@ bool Builder::foreign_operand(Wanted wanted, Index at) {
     if (found == Tok::Let && is_one_of(kind(before), {Tok::Open, Tok::FreshOpen}) &&
         lisp_let(before))
         return true;
-    if (list_spread(at)) return true;
+    if (list_spread(at) || (found == Tok::Arrow && lisp_arrow(at)) || bars_of_amount(at))
+        return true;
     if (found == Tok::Let && kind(before) == Tok::If) {
         foreign(span(before, at), "a condition binds no name: every name has a value")
             .help("bind it before: `let x = …`, and then `if x > 0 { … }`");
@@ -265,7 +266,7 @@ void Builder::changed_parameter(Index word, Index type) {
 bool Builder::foreign_name(Index at) {
     const Tok found = kind(at);
     const Index before = at > 0 ? at - 1 : 0;
-    if (label_of_param(at)) return true;
+    if (label_of_param(at) || keyword_as_name(at)) return true;
     if (kind(before) == Tok::Fn && (found == Tok::Open || found == Tok::LambdaOpen)) {
         foreign(span(before), "a function without a name is written `x => …`")
             .help("name it, as in `fn f(x) = 2 * x`, or write `x => 2 * x`");
@@ -383,6 +384,16 @@ bool Builder::foreign_function_body(Index at) {
             .help("write " + in_code("-> " + std::string(text(at))), {{{id_, end, end}, " ->"}});
         return true;
     }
+    if (found == Tok::End && text(at) != ";") { // on the lines below
+        std::vector<Edit> edits;
+        Index head = at;
+        while (head > 0 && kind(head) != Tok::Fn) --head;
+        if (!indented_body(at, edits)) return false;
+        lost_.push_back(head + 1);
+        foreign(span(head, at - 1), "a function's body stands in braces, or behind a `=`")
+            .help("write `{ … }`", std::move(edits));
+        return true;
+    }
     if (found == Tok::FatArrow)
         return foreign_instead(at, "the body of a `fn` stands behind `=`", "=");
     const bool value = is_one_of(found, {Tok::Name, Tok::Number, Tok::Open, Tok::ListOpen, Tok::If,
@@ -459,10 +470,23 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
         diagnostics_.add(Code::SyntaxError, span(at - 1), "a name is missing behind this `.`")
             .help("leave it away, or name what is done: `.translate(x: 1)`", {{span(at - 1), ""}});
         return true;
+    case Wanted::TypeArrow:
+        if (at < 2 || kind(at - 1) != Tok::Close || match(at - 1) < 2) return false;
+        foreign(span(match(at - 1), at - 1), "a row of types is none: several values are a vector "
+                                             "or a list")
+            .help("leave the type away, or write `vec2`, `vec3`, `[float]`",
+                  {{{id_, token(match(at - 1) - 2).end, token(at - 1).end}, ""}});
+        return true;
+    case Wanted::TypeNumber: // `Option<f32>`
+        if (at < 2 || kind(at) != Tok::Name || kind(at + 1) != Tok::Greater ||
+            type_named(text(at - 2)) != TypeName::Unknown)
+            return false;
+        foreign(span(at - 2, at + 1), "a value has one type, and none within another")
+            .help("write the type alone, or leave it away",
+                  {{span(at - 2, at + 1), std::string(text(at))}});
+        return true;
     case Wanted::ParameterName:
     case Wanted::TypeEnd:
-    case Wanted::TypeNumber:
-    case Wanted::TypeArrow:
     case Wanted::Arrow:
     case Wanted::TernaryColon:
     case Wanted::StatementEnd: return false;

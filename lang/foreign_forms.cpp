@@ -449,6 +449,14 @@ class Forms : WordChanges {
 
     // `union(*shapes)`, `union(...shapes)`: the only argument.
     bool by_spread(std::size_t &i) {
+        if (text(i) == "**" && is_one_of(before(i), {Tok::Open, Tok::Comma}) &&
+            kind(i + 1) == Tok::Name) { // `f(**options)`
+            diagnostics_.withdraw(Code::ForeignSyntax, words(i, i));
+            say(words(i, i + 1), "arguments are given one by one, by their places or names")
+                .help("write each, as in `f(radius: 0.5, height: 2)`");
+            drop(i, i + 1, i);
+            return true;
+        }
         const bool sign = kind(i) == Tok::Star || (kind(i) == Tok::DotDot && text(i) == "...");
         if (!sign || before(i) != Tok::Open || i < 2 || kind(i - 2) != Tok::Name ||
             !is_one_of(kind(i + 1), {Tok::Name, Tok::ListOpen}) || words_[i].first_on_line)

@@ -118,6 +118,31 @@ std::uint32_t Lexer::name_with_letters(std::uint32_t begin) {
     return end;
 }
 
+// `[1, 0, 0] × [0, 1, 0]`, `u · v`: the sign is that of numbers too, and so only of what stands in
+// brackets it is known which product is meant.
+bool Lexer::product_of_vectors(std::uint32_t begin, std::uint32_t end, bool cross, Diagnostic &d) {
+    const std::string_view all = source_.text;
+    const std::string call = cross ? "cross(a, b)" : "dot(a, b)";
+    const std::size_t left = begin == 0 ? all.npos : all.find_last_not_of(" \t", begin - 1);
+    const std::size_t right = all.find_first_not_of(" \t", end);
+    if (left == all.npos || right == all.npos) return false;
+    const std::size_t open = all[left] == ']' ? all.rfind('[', left) : all.npos;
+    const std::size_t close = all[right] == '[' ? all.find(']', right) : all.npos;
+    if (open == all.npos && close == all.npos) {
+        d.note("of vectors it is `" + call + "`");
+        return false;
+    }
+    std::vector<Edit> edits;
+    if (open != all.npos && close != all.npos) {
+        const auto at = [](std::size_t i) { return static_cast<std::uint32_t>(i); };
+        edits = {{span(at(open), at(open)), cross ? "cross(" : "dot("},
+                 {span(at(left + 1), at(right)), ", "},
+                 {span(at(close + 1), at(close + 1)), ")"}};
+    }
+    d.help("a product of vectors is `" + call + "`", std::move(edits));
+    return true;
+}
+
 // Letters of any script, and what mathematics writes behind one; no signs and no spaces.
 static bool is_letter(std::uint32_t c) {
     if (c == 0xAA || c == 0xBA || c == 0xD7 || c == 0xF7) return false;

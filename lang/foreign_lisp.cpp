@@ -115,9 +115,42 @@ std::string Builder::lisp_part(Index at, Index end) const {
     return (moves ? "translate" : name) + "(" + arguments + ")";
 }
 
+// Janet's `(-> (sphere 1) (move x 1))`: what each makes of the value before it.
+std::string Builder::lisp_thread(Index open) const {
+    const Index close = match(open);
+    Index at = open + 2;
+    if (kind(at) == Tok::Greater) ++at; // `->>`
+    std::string out = lisp_value(at);
+    while (!out.empty() && at < close) {
+        const bool form = is_one_of(kind(at), {Tok::Open, Tok::FreshOpen});
+        const std::string call =
+            form ? lisp_part(at + 1, match(at)) : std::string(text(at)) + "()"; // `shell`
+        if (call.empty() || (!form && kind(at) != Tok::Name)) return {};
+        out += "." + call;
+        at = form ? match(at) + 1 : at + 1;
+    }
+    return out;
+}
+
+// `(fn [x] (f x))` as `x => f(x)`; at its first bracket.
+std::string Builder::lisp_function(Index open) const {
+    const Index list = open + 2, close = match(open), end = match(list);
+    if (!is_one_of(kind(list), {Tok::ListOpen, Tok::FreshListOpen, Tok::Open}) || end <= list)
+        return {};
+    std::string names;
+    for (Index i = list + 1; i < end; ++i)
+        names += (names.empty() ? "" : ", ") + std::string(text(i));
+    Index at = end + 1;
+    const std::string value = bare(lisp_value(at));
+    if (value.empty() || at != close) return {};
+    return (end == list + 2 ? names : "(" + names + ")") + " => " + value;
+}
+
 // What stands in parentheses, with Bauble's pipe: `(box 1 | move x 2)`.
 std::string Builder::lisp_form(Index open) const {
     const Index close = match(open);
+    if (kind(open + 1) == Tok::Arrow) return lisp_thread(open);
+    if (kind(open + 1) == Tok::Fn) return lisp_function(open);
     const bool infix = is_one_of(kind(open + 1), {Tok::Number, Tok::Name}) &&
                        is_one_of(kind(open + 2), {Tok::Slash, Tok::Star, Tok::Plus}) &&
                        token(open + 2).end < token(open + 3).begin;
@@ -198,6 +231,21 @@ bool Builder::lisp_let(Index open) {
         d.help("write " + in_code(written), {{span(open, close), written}});
     else
         d.help("write `let r = 2`, and on the next line what uses it");
+    return true;
+}
+
+// `(-> (sphere 1) (move x 1))`, at the arrow.
+bool Builder::lisp_arrow(Index at) {
+    if (at == 0 || !is_one_of(kind(at - 1), {Tok::Open, Tok::FreshOpen, Tok::LambdaOpen}))
+        return false;
+    const Index open = at - 1;
+    const std::string written = lisp_thread(open);
+    failed_ = match(open);
+    Diagnostic &d = foreign(span(open, at), "what is done to a shape stands behind a `.`");
+    if (written.empty())
+        d.help("write `sphere(1).translate(x: 1)`");
+    else
+        d.help("write " + in_code(written), {{span(open, match(open)), written}});
     return true;
 }
 

@@ -62,6 +62,11 @@ bool Builder::foreign_word_operator(Index at) {
         !ends_operand(kind(at - 1)) || is_declared(std::string(text(at))))
         return false;
     if (nothing_compared(at)) return true;
+    if (text(at) == "instanceof" && kind(at + 1) == Tok::Name) {
+        foreign(span(at), "every name has one type, which nobody asks for")
+            .help("leave the question away");
+        return true;
+    }
     const auto *row = std::ranges::find(word_operators, text(at), &WordOperator::word);
     if (row == std::end(word_operators)) return false;
     const bool negated = row->ours == "==" && kind(at + 1) == Tok::Not;
@@ -147,6 +152,14 @@ bool Builder::foreign_scope(Index colon) {
             .help("write " + in_code(text(colon + 2)), {{span(colon - 1, colon + 1), ""}});
         return true;
     }
+    for (Index i = 0; may_look_far() && i + 1 < colon;
+         ++i) { // `Kind::Ball`, of an enumeration above
+        if (kind(i) != Tok::Name || text(i) != "enum" || text(i + 1) != module) continue;
+        foreign(span(colon - 1, colon + 1), "the names of an enumeration are names of their own")
+            .help("leave " + in_code(std::string(module) + "::") + " away",
+                  {{span(colon - 1, colon + 1), ""}});
+        return true;
+    }
     foreign(span(colon, colon + 1), "what is in a module stands behind a `.`")
         .help("write `.`", {{span(colon, colon + 1), "."}});
     return true;
@@ -165,6 +178,56 @@ bool Builder::foreign_percent(Index at) {
     return true;
 }
 
+// `|x| - 1`, at the first bar, where no value stands before it.
+bool Builder::bars_of_amount(Index at) {
+    if (kind(at) != Tok::Bar || at == 0) return false;
+    std::vector<Edit> edits;
+    Index i = at;
+    for (bool opens = true; !ends_statement(i); i = match(i) > i ? match(i) + 1 : i + 1) {
+        if (is_one_of(kind(i), {Tok::Close, Tok::ListClose, Tok::Comma, Tok::BraceClose})) break;
+        if (kind(i) != Tok::Bar) continue;
+        if (opens == ends_operand(kind(i - 1))) return false; // a union
+        edits.push_back({span(i), opens ? "abs(" : ")"});
+        opens = !opens;
+    }
+    if (edits.size() < 2 || edits.size() % 2 != 0) return false;
+    foreign(span(at), "an amount is written `abs(x)`, of a vector `length(v)`")
+        .help("write `abs( … )`", std::move(edits));
+    return true;
+}
+
+// `let in = 2`: the name with a `_` behind it, in all places.
+bool Builder::keyword_as_name(Index at) {
+    constexpr std::size_t most_edits = 20;
+    const bool declares =
+        at > 0 && is_one_of(kind(at - 1), {Tok::Let, Tok::Var, Tok::Fn, Tok::Param});
+    const bool keyword =
+        is_one_of(kind(at), {Tok::Let, Tok::Var, Tok::Fn, Tok::Param, Tok::Import, Tok::For,
+                             Tok::In, Tok::If, Tok::Else, Tok::While, Tok::Limit, Tok::Break,
+                             Tok::Return, Tok::And, Tok::Or, Tok::Not, Tok::As});
+    if (!declares || !keyword || !is_one_of(kind(at + 1), {Tok::Assign, Tok::Open, Tok::Colon}))
+        return false;
+    const std::string name = std::string(text(at)) + "_";
+    std::vector<Edit> edits{{span(at), name}};
+    for (Index i = at + 1;
+         may_look_far() && i + 1 < tokens_.tokens.size() && edits.size() < most_edits; ++i) {
+        const bool value =
+            is_one_of(kind(i - 1), {Tok::Open, Tok::ListOpen, Tok::Comma, Tok::Plus, Tok::Minus,
+                                    Tok::Star, Tok::Slash, Tok::Assign, Tok::Colon, Tok::DotDot});
+        if (kind(i) != kind(at) || !value || is_one_of(kind(i + 1), {Tok::Name, Tok::Body}))
+            continue;
+        edits.push_back({span(i), name});
+        renamed_.insert(i);
+    }
+    failed_ = at + 1;
+    diagnostics_
+        .add(Code::SyntaxError, span(at),
+             in_code(text(at)) + " is a word of the language, "
+                                 "and no name")
+        .help("write " + in_code(name), std::move(edits));
+    return true;
+}
+
 // Where an operand is missing: what that says about the signs before it.
 bool Builder::missing_operand(Index at) {
     const Tok found = kind(at);
@@ -172,6 +235,14 @@ bool Builder::missing_operand(Index at) {
     const Tok sign = kind(before);
     if (foreign_percent(at)) return true;
     if (found == Tok::Colon && sign == Tok::Colon && foreign_scope(before)) return true;
+    const Index around = enclosing(at);
+    const bool argument = kind(around) == Tok::Open && around > 0 && touch(around - 1, around) &&
+                          kind(around - 1) == Tok::Name;
+    if (found == Tok::Assign && sign == Tok::Colon && touch(before, at) && !argument) {
+        foreign(span(before, at), "a value stands behind `=`")
+            .help("write `=`", {{span(before, at), "="}});
+        return true;
+    }
     if (found == Tok::Assign && sign == Tok::Colon && touch(before, at)) {
         foreign(span(before, at), "an argument is named with `:`")
             .help("write `:`", {{span(before, at), ":"}});
@@ -238,6 +309,7 @@ bool Builder::wanted_at_start(Index at) const {
 bool Builder::foreign_product(Index at) {
     if (at == 0 || kind(at - 1) != Tok::Number || kind(at) != Tok::Name || token(at).first_on_line)
         return false;
+    if (text(at) == "step" && is_one_of(kind(at + 1), {Tok::Number, Tok::Name})) return false;
     const std::string product = std::string(text(at - 1)) + " * " + std::string(text(at));
     diagnostics_.add(Code::SyntaxError, span(at - 1, at), "a product is written with `*`")
         .help("write " + in_code(product), {{{id_, token(at - 1).end, token(at).begin}, " * "}});

@@ -170,6 +170,7 @@ bool Builder::call_of_row(Index open) {
     if (open == 0 || kind(open) != Tok::ListOpen || kind(open - 1) != Tok::Name ||
         touch(open - 1, open) || is_one_of(kind(open - 2), {Tok::Let, Tok::Var, Tok::Dot}))
         return false;
+    if (spaced_statement(open)) return true;
     const Index close = match(open);
     const auto next = [&](Index i) { return match(i) > i ? match(i) + 1 : i + 1; };
     std::vector<Edit> edits{{{id_, token(open - 1).end, token(open).begin}, "("}};

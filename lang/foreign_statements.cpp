@@ -179,9 +179,19 @@ bool Builder::label_of_param(Index at) {
 
 // `param r = 1 min 0.5 max 2`, `param r = 1 range(0, 2)`, at the word: two numbers as a range.
 bool Builder::words_of_range(Index first, Index at) {
-    if (kind(first) != Tok::Param || kind(at) != Tok::Name || !is_one_of(text(at), range_words) ||
-        at < first + 4)
-        return false;
+    if (kind(first) != Tok::Param || kind(at) != Tok::Name || at < first + 4) return false;
+    Index in = first;
+    while (in < at && kind(in) != Tok::In) ++in;
+    if (in < at) { // `param n = 3 in 1..10 step 1`
+        lost_.push_back(first + 1);
+        const Index end = statement_end(first);
+        const Index kept = kind(end - 1) == Tok::String ? end - 1 : end; // its words
+        foreign(span(at), "a param has a value, a range and words, and nothing more")
+            .help("leave " + in_code(text(token(at).begin, token(kept - 1).end)) + " away",
+                  {{{id_, token(at - 1).end, token(kept - 1).end}, ""}});
+        return true;
+    }
+    if (!is_one_of(text(at), range_words)) return false;
     std::vector<std::string> ends;
     const Index past = statement_end(first);
     Index label = past;
@@ -267,6 +277,116 @@ bool Builder::counted_block(Index first, Index at) {
     failed_ = match(brace) > brace ? match(brace) : brace;
     foreign(span(first, brace - 1), "a loop is written `for i in 0..8 { … }`")
         .help("write " + in_code(head + " { … }"), {{span(first, brace - 1), head}});
+    return true;
+}
+
+// `try { s } catch (e) { … }`: what stands in its first braces.
+bool Builder::tried_block(Index first) {
+    const Index open = first + 1, close = match(open);
+    if (kind(open) == Tok::Colon) { // Python's
+        std::vector<Edit> body, handler;
+        if (!indented_body(open, body)) return false;
+        Index begin = open + 1;
+        while (kind(begin) == Tok::End) ++begin;
+        const Index last = failed_;
+        for (Index i = last + 1; i < tokens_.tokens.size();) {
+            while (kind(i) == Tok::End && i + 1 < tokens_.tokens.size()) ++i;
+            const bool goes_on =
+                text(i) == "except" || text(i) == "finally" || kind(i) == Tok::Else;
+            Index colon = i;
+            while (!ends_statement(colon) && kind(colon) != Tok::Colon) ++colon;
+            if (!goes_on || kind(colon) != Tok::Colon || !indented_body(colon, handler)) break;
+            i = failed_ + 1;
+        }
+        foreign(span(first), "a scene catches nothing: what is wrong is told before it is drawn")
+            .help("leave `try` and `except` away",
+                  {{{id_, token(first).begin, token(begin).begin}, ""},
+                   {{id_, token(last).end, token(failed_).end}, ""}});
+        return true;
+    }
+    if (kind(open) != Tok::Trailing || close <= open + 1) return false;
+    const Index end = statement_end(first);
+    foreign(span(first), "a scene catches nothing: what is wrong is told before it is drawn")
+        .help("leave `try` and `catch` away",
+              {{{id_, token(first).begin, token(open + 1).begin}, ""},
+               {{id_, token(close - 1).end, token(std::max(close, end - 1)).end}, ""}});
+    return true;
+}
+
+// `[i, r] of list.entries()`, `[a, b] of pairs`, whose names stand in brackets that open at `open`:
+// the head of a loop, and what binds the names in its body. Empty where it is none.
+std::string Builder::loop_of_parts(Index open, std::string list, std::string &lets) const {
+    const Index close = match(open);
+    bool counted = false;
+    for (const std::string_view counts : {".entries()", ".enumerate()"})
+        if (list.ends_with(counts)) {
+            list.resize(list.size() - counts.size());
+            counted = true;
+        }
+    if (constexpr std::string_view needless = ".iter()"; list.ends_with(needless))
+        list.resize(list.size() - needless.size());
+    if (close <= open || list.empty()) return {};
+    const std::string first(text(open + 1));
+    for (Index name = open + 1, part = 0; name < close; name += 2, ++part) {
+        if (kind(name) != Tok::Name) return {};
+        const std::string place =
+            counted ? list + "[" + first + "]" : "row[" + std::to_string(part) + "]";
+        if (!counted || part == 1) lets += "let " + std::string(text(name)) + " = " + place + "; ";
+    }
+    if (lets.empty()) return {};
+    return counted ? first + " in 0..len(" + list + ")" : "row in " + list;
+}
+
+// `for (i, r) in list.enumerate() { … }`, at the parenthesis.
+bool Builder::loop_of_tuple(Index open, Diagnostic &d) {
+    const Index first = match(open) + 2;
+    Index body = first;
+    while (!ends_statement(body) && kind(body) != Tok::Body)
+        body = match(body) > body ? match(body) + 1 : body + 1;
+    failed_ = std::max(body, match(body));
+    if (kind(body) != Tok::Body || body == first) return true;
+    std::string lets;
+    const std::string list(text(token(first).begin, token(body - 1).end));
+    const std::string head = loop_of_parts(open, list, lets);
+    if (!head.empty())
+        d.help("write " + in_code("for " + head + " { … }"),
+               {{span(open, body - 1), head},
+                {{id_, token(body + 1).begin, token(body + 1).begin}, lets}});
+    return true;
+}
+
+// `for x in l, z in m { … }`, at the comma; `for a in 0..360 step 30 { … }`, at the word.
+bool Builder::head_of_loop(Index at) {
+    const bool next =
+        kind(at) == Tok::Comma && kind(at + 1) == Tok::Name && kind(at + 2) == Tok::In;
+    const bool step = kind(at) == Tok::Name && (text(at) == "step" || text(at) == "by") &&
+                      is_one_of(kind(at + 1), {Tok::Number, Tok::Name});
+    Index in = at, body = at, dots = 0;
+    while (in > 0 && !is_one_of(kind(in), {Tok::In, Tok::End}))
+        in = match(in - 1) < in - 1 ? match(in - 1) : in - 1;
+    while (!ends_statement(body) && kind(body) != Tok::Body)
+        body = match(body) > body ? match(body) + 1 : body + 1;
+    if ((!next && !step) || kind(in) != Tok::In || in < 2 || kind(in - 2) != Tok::For ||
+        kind(body) != Tok::Body)
+        return false;
+    if (next) {
+        const Index close = match(body);
+        failed_ = close;
+        foreign(span(at), "a loop has one variable; another is a loop within it")
+            .help("write `for x in l { for z in m { … } }`",
+                  {{span(at), " { for"}, {{id_, token(close).end, token(close).end}, " }"}});
+        return true;
+    }
+    for (Index i = in + 1; i < at; ++i)
+        if (is_one_of(kind(i), {Tok::DotDot, Tok::DotDotEqual})) dots = i;
+    if (dots <= in + 1) return false;
+    const std::string range = "range(" +
+                              std::string(text(token(in + 1).begin, token(dots - 1).end)) + ", " +
+                              std::string(text(token(dots + 1).begin, token(at - 1).end)) + ", " +
+                              std::string(text(token(at + 1).begin, token(body - 1).end)) + ")";
+    failed_ = match(body);
+    foreign(span(at), "numbers in steps are a `range`")
+        .help("write " + in_code(range), {{span(in + 1, body - 1), range}});
     return true;
 }
 

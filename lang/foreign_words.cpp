@@ -62,6 +62,11 @@ constexpr ForeignWord statement_words[] = {
     {"match", "a choice is written with `if`", "write `if a { … } else if b { … } else { … }`"},
     {"do", "a loop begins with its condition", "write `while condition limit n { … }`"}};
 
+bool begins_value(Tok kind) {
+    return is_one_of(kind, {Tok::Name, Tok::Number, Tok::String, Tok::Open, Tok::ListOpen,
+                            Tok::FreshListOpen, Tok::LambdaName, Tok::If});
+}
+
 } // namespace
 
 // -- statements ----------------------------------------------------------------------------------
@@ -122,6 +127,7 @@ bool Builder::foreign_statement(Index first) {
         }
         return false;
     }
+    if (called_record(binds ? first + 3 : first + 2)) return true;
     if (kind(first) != Tok::Name) return false;
     if ((text(first) == "module" && kind(first + 1) == Tok::Dot && text(first + 2) == "exports") ||
         (text(first) == "exports" && !may_be_declared("exports") &&
@@ -167,6 +173,8 @@ bool Builder::foreign_statement(Index first) {
         if (kind(after) == Tok::Name && !token(after).first_on_line) failed_ = after;
     }
     if (text(first) == "parametric" && curv_slider(first)) return true;
+    if (text(first) == "try" && tried_block(first)) return true;
+    if (text(first) == "struct" && foreign_struct(first)) return true;
     if (text(first) == "enum") {
         enumeration(first);
         return true;
@@ -220,7 +228,9 @@ bool Builder::indented_body(Index colon, std::vector<Edit> &edits) {
         const std::size_t begin = line == std::string_view::npos ? 0 : line + 1;
         return std::min(all.find_first_not_of(" \t", begin), all.size()) - begin;
     };
-    const std::size_t margin = indent_of(colon);
+    const bool sign = kind(colon) == Tok::Colon,
+               word = kind(colon) == Tok::Else; // or the line's end
+    const std::size_t margin = indent_of(sign || word ? colon : colon - 1);
     const std::size_t count = tokens_.tokens.size();
     Index last = colon;
     bool below = false;
@@ -236,8 +246,10 @@ bool Builder::indented_body(Index colon, std::vector<Edit> &edits) {
     }
     if (last == colon) return false;
     const std::uint32_t end = token(last).end;
-    const bool spaced = token(colon).begin > 0 && source_.text[token(colon).begin - 1] == ' ';
-    edits.push_back({span(colon), spaced ? "{" : " {"});
+    const bool spaced =
+        sign && token(colon).begin > 0 && source_.text[token(colon).begin - 1] == ' ';
+    const std::uint32_t header = token(word ? colon : colon - 1).end;
+    edits.push_back({sign ? span(colon) : Span{id_, header, header}, spaced ? "{" : " {"});
     edits.push_back(
         {{id_, end, end}, below ? "\n" + std::string(margin, ' ') + "}" : std::string(" }")});
     failed_ = last;
@@ -246,6 +258,7 @@ bool Builder::indented_body(Index colon, std::vector<Edit> &edits) {
 
 // `if a: …`, `for x in l: …`, at the colon; the `else:` behind it too.
 void Builder::foreign_colon(Index at) {
+    constexpr std::string_view below = ", which begin on the line of its header";
     std::vector<Edit> edits;
     bool whole = indented_body(at, edits);
     for (Index i = failed_ + 1; whole && i < tokens_.tokens.size();) {
@@ -255,14 +268,15 @@ void Builder::foreign_colon(Index at) {
         if (!other) edits.push_back({span(i), "else if"});
         Index colon = i + 1;
         while (!ends_statement(colon) && kind(colon) != Tok::Colon) ++colon;
-        whole = kind(colon) == Tok::Colon && indented_body(colon, edits);
+        if (other && token(i + 1).first_on_line) colon = i;
+        whole = (kind(colon) == Tok::Colon || kind(at) == Tok::End) && indented_body(colon, edits);
         i = failed_ + 1;
     }
-    Diagnostic &d = foreign(span(at), "a body stands in braces");
+    Diagnostic &d =
+        foreign(span(at), "a body stands in braces" +
+                              std::string(kind(at) == Tok::End ? below : std::string_view()));
     d.help("write `{ … }`", whole ? std::move(edits) : std::vector<Edit>{});
 }
-
-// -- bodies without braces
 
 // `if a then b else c`, `for i in 0..3 do b`.
 void Builder::foreign_then(Index at) {
@@ -326,22 +340,11 @@ bool Builder::foreign_body(Index at) {
         return true;
     }
     if (at < tokens_.tokens.size() && found == Tok::End) {
-        const Index end = body_below(at);
-        bool whole = end > at && !goes_on_with_else(end);
-        for (Index i = at; i < end; ++i) whole = whole && kind(i) != Tok::Else;
-        std::vector<Edit> edits;
-        if (whole) {
-            const std::uint32_t header = token(at - 1).end, last = token(end - 1).end;
-            edits = {{{id_, header, header}, " {"}, {{id_, last, last}, " }"}};
-            failed_ = end - 1;
-        }
-        foreign(span(at), "a body stands in braces, which begin on the line of its header")
-            .help("write `{ … }`", std::move(edits));
+        foreign_colon(at);
         return true;
     }
-    if (foreign_word_operator(at) || foreign_comparison(at)) return true;
-    if (found == Tok::Colon && foreign_scope(at)) return true;
-    if (found == Tok::Colon && colon_range(at)) return true;
+    if (head_of_loop(at) || foreign_word_operator(at) || foreign_comparison(at)) return true;
+    if (found == Tok::Colon && (foreign_scope(at) || colon_range(at))) return true;
     if (found == Tok::Assign) {
         foreign(span(at), "a comparison is written `==`").help("write `==`", {{span(at), "=="}});
         return true;
@@ -429,6 +432,7 @@ Builder::Index Builder::value_start(Index first, Index at) const {
 
 // `sphere(1) >> rotate(x)` and `a |> f(x)`, whose sign ends at `at`.
 void Builder::foreign_pipe(Index at) {
+    if (spaced_statement(at)) return;
     const Index sign = at - 1, start = value_start(0, sign);
     Diagnostic &d = foreign(span(sign, at), "there is no operator " +
                                                 in_code(text(token(sign).begin, token(at).end)));
@@ -452,6 +456,12 @@ void Builder::foreign_pipe(Index at) {
 // `[1, 2] ++ [3]`, of which the first is the operand on top.
 bool Builder::foreign_concat(Index at) {
     if (kind(at) != Tok::PlusPlus || ends_statement(at + 1)) return false;
+    if (!begins_value(kind(at + 1))) { // `while (i++ < 5)`
+        foreign(span(at), "there is no `++` within a value")
+            .help("a name is counted up by `i += 1`, a statement of its own in a function; a loop "
+                  "that counts is `for i in 0..5 { … }`");
+        return true;
+    }
     const Index start = value_start(0, at);
     Index end = at + 1;
     while (!ends_statement(end) && kind(end) != Tok::Comma && kind(end) != Tok::Close &&
@@ -473,6 +483,7 @@ bool Builder::foreign_record(Index brace) {
     const bool names = kind(brace + 2) == Tok::Colon;
     const bool arguments = brace > 0 && is_one_of(kind(brace - 1), {Tok::Open, Tok::Comma}) &&
                            kind(close + 1) == Tok::Close && kind(brace + 1) == Tok::Name;
+    if (parameters_in_braces(brace) || named_record(brace)) return true;
     if (!names && kind(brace + 1) != Tok::BraceClose) return false;
     if (arguments && names) {
         foreign(span(brace), "arguments with names need no braces")

@@ -268,6 +268,9 @@ void Layout::line_begins(const Token &t) {
             .help("move it to the end of the line above", {{{id_, end, t.end}, " {"}});
         return;
     }
+    if (sign == "%" && t.end < source_.text.size() && source_.text[t.end] >= 'a' &&
+        source_.text[t.end] <= 'z') // OpenSCAD's `%sphere(2)`: told by the grammar
+        return end_statement();
     if (belongs_to_line_above(t.kind)) {
         const std::string op(sign);
         std::uint32_t rest = t.end;

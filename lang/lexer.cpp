@@ -142,7 +142,15 @@ void Lexer::number(std::uint32_t begin, std::uint32_t end) {
     }
     const Tok before =
         words_.tokens.size() > 1 ? words_.tokens[words_.tokens.size() - 2].kind : Tok::End;
+    if (const auto told = told_names_.find(word); told != told_names_.end()) { // `2nd`, once more
+        Diagnostic *first = diagnostics_.find(Code::BadNumber, told->second.first);
+        constexpr std::size_t most_edits = 40;
+        if (first && first->fix && ++told->second.uses < most_edits)
+            first->fix->edits.push_back({span(begin, end), first->fix->edits[0].replacement});
+        return;
+    }
     if (is_one_of(before, {Tok::Let, Tok::Var, Tok::Fn, Tok::Param})) {
+        told_names_.try_emplace(word, ToldName{span(begin, end)});
         const std::size_t digits = number_length(word);
         const std::string name =
             std::string(word.substr(digits)) + std::string(word.substr(0, digits));
@@ -235,6 +243,11 @@ void Lexer::quoted(std::uint32_t begin, std::uint32_t end) {
         source_.text[begin] == '`' ? joined_string(slice(begin, end), "${") : std::string();
     if (!joined.empty()) {
         foreign(begin, end, "a string holds no values", joined);
+        return;
+    }
+    if (source_.text[begin] == '`' && slice(begin, end).find("${") != std::string_view::npos) {
+        report(Code::ForeignSyntax, begin, end, "a string holds no values")
+            .help("join it to them: `\"r = \" + r`");
         return;
     }
     foreign(begin, end, "a string stands in double quotes",
@@ -334,8 +347,10 @@ bool Lexer::strange_sign(std::uint32_t begin, std::uint32_t end, std::uint32_t c
     for (const Twin &twin : twins) {
         if (twin.code_point != c) continue;
         add(twin.kind, begin, end);
-        report(Code::BadCharacter, begin, end, "this sign is not one of the language's")
-            .help("write " + quoted_code(twin.ours), {{span(begin, end), std::string(twin.ours)}});
+        Diagnostic &d =
+            report(Code::BadCharacter, begin, end, "this sign is not one of the language's");
+        if (twin.kind != Tok::Star || !product_of_vectors(begin, end, c == 0xD7, d))
+            d.help("write " + quoted_code(twin.ours), {{span(begin, end), std::string(twin.ours)}});
         return true;
     }
     return false;
@@ -420,6 +435,18 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
     if (text == "\\" && without_end(rest.substr(0, rest.find('\n'))).empty()) {
         report(Code::BadCharacter, begin, end, "a line that ends in an operator goes on by itself")
             .help("leave the `\\` away", {{span(begin, end), ""}});
+        return;
+    }
+    if (text == "$preview") { // which has one way to be drawn here
+        add(Tok::False, begin, end);
+        foreign(begin, end, "a scene is the same where it is looked at and where it is drawn",
+                "false");
+        return;
+    }
+    if (text == "$children") {
+        add(Tok::Bad, begin, end);
+        report(Code::BadCharacter, begin, end, "the language does not use `$`")
+            .help("the shapes that a function is given are a parameter: `fn ring(s) { … s … }`");
         return;
     }
     add(Tok::Bad, begin, end);

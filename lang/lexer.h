@@ -59,6 +59,7 @@ class Lexer {
     Diagnostics &diagnostics_;
     Words words_;
     bool is_named(std::string_view number) const;
+    bool product_of_vectors(std::uint32_t begin, std::uint32_t end, bool cross, Diagnostic &d);
 
     bool fresh_line_ = true;
     const bool beyond_ascii_; // the text has other letters somewhere

@@ -39,6 +39,9 @@ struct ArgumentNames {
     std::string_view ours, theirs;
 };
 constexpr ArgumentNames argument_names[] = {
+    {"y", " up height vertical "},
+    {"x", " right horizontal "},
+    {"z", " forward "},
     {"diffuse", " color colour albedo ambient basecolor "},
     {"exponent", " shininess hardness "},
     {"emission", " emissive glow "},
@@ -204,22 +207,78 @@ class Remedy {
         if (!letters.empty() &&
             !letters_remedy(ev_, function_, formals_, args_, letters, callee_, fix_))
             others.insert(others.begin(), letters.begin(), letters.end());
+        if (function_ == "repeat" && row_along(unknown)) return fix_;
         if (function_ == "slab" && slab_between(ev_, args_, unknown, fix_)) return fix_;
         if (function_ == "cylinder" || function_ == "cone")
             cone_ = cone_between(ev_, args_, unknown, callee_, fix_);
         alone_ = others.size() == 1;
         for (std::size_t i : others)
             if (!behind(i) && !elsewhere(args_[i].name->text, i)) ours(i);
+        take_away();
         return fix_;
     }
 
   private:
     void say(std::string help) { fix_.message += fix_.message.empty() ? help : "; " + help; }
-    void leave(std::size_t i) { fix_.edits.push_back({with_comma(args_, i, callee_), ""}); }
+    void leave(std::size_t i) { left_.push_back(i); }
+    // What goes, with the commas that parted it: arguments that stand together go together.
+    void take_away() {
+        std::ranges::sort(left_);
+        for (std::size_t k = 0; k < left_.size();) {
+            const std::size_t first = left_[k];
+            std::size_t last = first;
+            while (++k < left_.size() && left_[k] == last + 1) last = left_[k];
+            const Span own = join(whole_argument(args_[first]), whole_argument(args_[last]));
+            Span gone = own;
+            if (first > 0 && args_[first - 1].span.begin >= callee_.end)
+                gone = {own.source, args_[first - 1].span.end, own.end};
+            else if (last + 1 < args_.size() && !args_[last + 1].trailing)
+                gone = {own.source, own.begin, whole_argument(args_[last + 1]).begin};
+            fix_.edits.push_back({gone, ""});
+        }
+        left_.clear();
+    }
     bool is_free(std::string_view ours) const {
         return std::ranges::find(proposed_, ours) == proposed_.end() &&
                std::ranges::none_of(
                    args_, [&](const Argument &b) { return b.name && b.name->text == ours; });
+    }
+
+    // `s.repeat(3, along: X, spacing: 1)`: a row of so many, so far apart.
+    bool row_along(const std::vector<std::size_t> &unknown) {
+        std::string axis, step = "1", count;
+        Span row = args_[0].span;
+        for (std::size_t i = 0; i < args_.size(); ++i) {
+            const Argument &a = args_[i];
+            if (a.value.kind == ValueKind::Shape && i == 0) continue;
+            if (a.trailing || !row.source) return false;
+            const std::string name = a.name ? a.name->text : std::string();
+            const Span whole = whole_argument(a);
+            row = count.empty() && axis.empty() && row == args_[0].span ? whole : join(row, whole);
+            if (names_an_axis(name) || name == "along" || name == "dir")
+                axis = axis_text(ev_, a.value, a.span);
+            else if (name.empty() && a.value.kind == ValueKind::Int && count.empty())
+                count = source_text(ev_, a.span);
+            else if (name == "count" || name == "n" || name == "times" || name == "copies")
+                count = source_text(ev_, a.span);
+            else if (name == "cell" || our_argument(name, formals_) == "cell")
+                step = source_text(ev_, a.span);
+            else
+                return false;
+        }
+        if (unknown.empty() || axis.size() != 1 || axis[0] < 'X' || axis[0] > 'Z') return false;
+        const auto vector = [&](const std::string &x, const char *other) {
+            std::string out = "[";
+            for (char c = 'X'; c <= 'Z'; ++c) {
+                out += c == 'X' ? "" : ", ";
+                out += c == axis[0] ? x : std::string(other);
+            }
+            return out + "]";
+        };
+        std::string written = vector(step, "0");
+        if (!count.empty()) written += ", count: " + vector(count, "1");
+        fix_ = {fmt::format("a row is `repeat({})`", written), {{row, written}}};
+        return true;
     }
 
     // `sphere(1, color: red)`, `torus(1, 0.2, axis: Z)`: what is done behind the call.
@@ -255,6 +314,14 @@ class Remedy {
         return true;
     }
 
+    // `union(a, b, smooth: 0.2)`.
+    bool joins_smoothly(std::string_view name) const {
+        const bool joins =
+            function_ == "union" || function_ == "intersection" || function_ == "difference";
+        return joins && (name == "smooth" || name == "k" || name == "radius" || name == "r" ||
+                         name == "blend" || name == "smoothness" || name == "fillet");
+    }
+
     // What is said otherwise, or set elsewhere.
     bool elsewhere(const std::string &name, std::size_t i) {
         const bool camera = function_ == "camera";
@@ -267,15 +334,25 @@ class Remedy {
             if (name == "up") leave(i);
         } else if (camera && (name == "lens" || name == "zoom")) {
             say("the angle of view is `fov: 45deg`");
+            leave(i);
         } else if (camera && (name == "near" || name == "far" || name == "clip_end")) {
             say("a scene is drawn as far as `render(far: …)` says");
+            leave(i);
+        } else if (function_ == "render" &&
+                   (name == "width" || name == "height" || name == "size" || name == "w" ||
+                    name == "h" || name == "resolution")) {
+            if (fix_.message.find("--size") == std::string::npos)
+                say("the size of a picture is said where it is made: `fathom render --size`");
+            leave(i);
         } else if (function_ == "light" && name == "type") {
-            say("a light from afar is `sun(direction: …)`");
-        } else if (function_ == "sun" &&
-                   (name == "angle" || name == "elevation" || name == "azimuth")) {
+            say("a light from afar is `sun(direction: …)`, any other has no type");
+            leave(i);
+        } else if (function_ == "sun" && (name == "angle" || name == "elevation" ||
+                                          name == "azimuth" || name == "rotation")) {
             say("where the sun stands is a direction: `sun(direction: [0.4, 1, 0.3])`");
         } else if (function_ == "plane" && (name == "size" || name == "width")) {
             say("a plane has no end; with one it is `box([10, 0.1, 10])`");
+            leave(i);
         } else if (function_ == "slab" && name.size() == 2 && name[0] >= 'x' && name[0] <= 'z') {
             if (fix_.message.empty())
                 say(fmt::format("a slab lies round the origin: `slab(1, axis: {})`, moved by "
@@ -296,10 +373,21 @@ class Remedy {
             if (fix_.message.find("capped_cone") == std::string::npos)
                 say("a cone without its tip is `capped_cone(bottom: …, top: …, height: …)`");
         } else if (function_ == "material" && is_gloss(name)) {
+            leave(i);
             if (std::exchange(told_gloss_, true)) return true;
             say(fmt::format("for `{}` there is `exponent`, from 1 (dull) to 1000 (glossy), and "
                             "`specular`, the highlight's colour",
                             name));
+        } else if (joins_smoothly(name) && args_[i].value.kind != ValueKind::Bool &&
+                   args_.size() > 1 && &args_[i] == &args_.back()) {
+            const std::string smooth = "smooth_" + std::string(function_);
+            const std::string value = source_text(ev_, args_[i].span);
+            say(fmt::format("write `{}({}, …)`", smooth, value));
+            fix_.edits.push_back({callee_, smooth});
+            const Span first = whole_argument(args_[0]);
+            if (first.begin > callee_.end)
+                fix_.edits.push_back({{first.source, first.begin, first.begin}, value + ", "});
+            leave(i);
         } else if (name == "within" && function_ != "within") {
             say("a region stands behind the whole: `.within(ball(3))`");
         } else
@@ -317,12 +405,34 @@ class Remedy {
         fix_.edits.push_back({{a.span.source, a.span.end, a.span.end}, grouped ? ") / 2" : " / 2"});
     }
 
+    // The one parameter that has to be given and is not, where one argument alone is unknown.
+    std::string wanted_still() const {
+        std::string wanted;
+        std::size_t place = 0;
+        const auto unnamed = static_cast<std::size_t>(
+            std::ranges::count_if(args_, [](const Argument &a) { return !a.name && !a.trailing; }));
+        for (const Formal &f : formals_) {
+            const bool given =
+                place++ < unnamed || std::ranges::any_of(args_, [&](const Argument &a) {
+                    return a.name && a.name->text == f.name;
+                });
+            if (given || f.optional || f.takes_rest) continue;
+            if (!wanted.empty()) return {};
+            wanted = f.name;
+        }
+        if (wanted.empty() && formals_.size() == 1 && args_.size() == 1) wanted = formals_[0].name;
+        return alone_ && is_free(wanted) ? wanted : std::string();
+    }
+
     // An argument of ours by another name.
     void ours(std::size_t i) {
         const std::string &name = args_[i].name->text;
-        const std::string taken = our_argument(name, formals_);
+        std::string taken = our_argument(name, formals_);
+        if (taken.empty() && way_from_elsewhere(name).empty()) taken = wanted_still();
         if (const auto way = way_from_elsewhere(name); taken.empty() && !way.empty())
-            say(std::string(way));
+            say(std::string(way)), leave(i);
+        else if (taken.empty())
+            say(fmt::format("leave `{}` away", name)), leave(i);
         if (taken.empty() || !is_free(taken)) return;
         proposed_.push_back(taken);
         say(alone_ ? fmt::format("did you mean `{}`?", taken)
@@ -337,6 +447,7 @@ class Remedy {
     Span callee_;
     Fix fix_;
     std::vector<std::string> proposed_; // each of our arguments once
+    std::vector<std::size_t> left_;     // arguments that are left away
     bool told_gloss_ = false, cone_ = false, rounded_ = false, alone_ = false;
 };
 

@@ -156,19 +156,7 @@ static void report_too_many(Interpreter &ev, std::string_view name, std::span<co
                "`ellipsoid([1, 2, 3])`");
     else if (name == "cylinder" || name == "cone")
         d.help("a cone without its tip is `capped_cone(bottom, top, height)`");
-}
-
-// The call that a function of the library has in its description; empty: none.
-static std::string example_of(Interpreter &ev, std::string_view name) {
-    const auto function = look_up(ev, ev.prelude_frame, intern(ev, std::string(name)));
-    if (!function || function->kind != ValueKind::Closure) return {};
-    const Closure c = ev.closures[function->id];
-    const std::string &doc = c.ast->functions[c.function].doc;
-    constexpr std::string_view mark = "Example: `";
-    const std::size_t begin = doc.find(mark);
-    if (begin == doc.npos) return {};
-    const std::size_t first = begin + mark.size(), end = doc.find('`', first);
-    return end == doc.npos ? std::string() : doc.substr(first, end - first);
+    leave_last_away(ev, d, args, first);
 }
 
 static void report_missing(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
@@ -186,8 +174,9 @@ static void report_missing(Interpreter &ev, std::string_view name, std::span<con
         const Span before{args[0].span.source, args[0].span.begin, args[0].span.begin};
         d.help("a range begins somewhere: `range(0, n)`, or `0..n`", {{before, "0, "}});
     }
+    if (!d.fix && args.empty()) help_with_second_call(ev, d, call);
     if (!d.fix)
-        if (const std::string example = example_of(ev, name); !example.empty())
+        if (const std::string example = example_of(ev, name, formals); !example.empty())
             d.help(fmt::format("as in `{}`", example));
     if (!is_library_place(ev, missing.declared)) d.label(missing.declared, "declared here");
 }
@@ -235,6 +224,14 @@ static void report_order(Interpreter &ev, std::span<const Formal> formals,
     Diagnostic &d = report(ev, Code::ArgumentOrder, a.span,
                            "an argument without a name stands behind one with a name")
                         .label(first_named, "named here");
+    const auto place = static_cast<std::size_t>(&a - args.data());
+    if (place > 0 && args[place - 1].value.kind == ValueKind::Int && a.plain_literal) {
+        const Span between{a.span.source, args[place - 1].span.end, a.span.begin};
+        if (text(ev.sources, between) == ",") { // `cylinder(radius: 0,5, height: 2)`
+            d.help("a fraction is written with a point", {{between, "."}});
+            return;
+        }
+    }
     const std::string_view left = only_one_left(formals, args, bound);
     if (const auto edits = names_away(formals, args); left.empty() && !edits.empty())
         d.help("the arguments stand in their order, and need no names", edits);

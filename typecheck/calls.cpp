@@ -268,11 +268,16 @@ Value call_with(Interpreter &ev, const Value &callee, const std::vector<Value> &
 
 // A number without a unit, or a list of such.
 static bool is_plain_literal(const File &ast, const lang::Expr &e) {
-    if (auto *n = std::get_if<lang::Number>(&e.kind)) return n->unit.empty();
+    const auto is_number = [&](const lang::Expr &x) {
+        const auto *u = std::get_if<lang::Unary>(&x.kind);
+        const bool negated = u && u->op == lang::UnaryOp::Neg;
+        const auto *n = std::get_if<lang::Number>(negated ? &ast.exprs[u->operand].kind : &x.kind);
+        return n && n->unit.empty();
+    };
+    if (is_number(e)) return true;
     auto *list = std::get_if<lang::List>(&e.kind);
     return list && !list->items.empty() && std::ranges::all_of(list->items, [&](lang::ExprId id) {
-               auto *n = std::get_if<lang::Number>(&ast.exprs[id].kind);
-               return n && n->unit.empty();
+               return is_number(ast.exprs[id]);
            });
 }
 
@@ -411,6 +416,8 @@ Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::C
                 d.help(std::string(way), edits_of_list_method(ev, ast, *m, call, place));
             if (!d.fix && !near.empty())
                 d.help(fmt::format("did you mean `{}`?", near), {{m->name.span, near}});
+            if (const auto all = what_there_is(object); !d.fix && !all.empty())
+                d.help(std::string(all));
             return poison();
         }
         if (f->kind == ValueKind::Builtin && is_foreign_method(ev, object, ast, *m, call, place))

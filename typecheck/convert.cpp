@@ -57,6 +57,8 @@ bool check_type(Interpreter &ev, const lang::TypeExpr &type) {
     std::string near(type_from_elsewhere(type.name));
     if (near.empty()) near = nearest_name(type.name, names);
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{type.span, near}});
+    if (!d.fix)
+        d.help("the types are those of the language: leave it away", type_away(ev, type.span));
     return false;
 }
 
@@ -266,7 +268,7 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
                    : std::vector<Edit>{});
     if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Int &&
         is_numeric(v))
-        d.help("`int(x)` cuts the fraction off");
+        help_with_whole(ev, d, v, place);
     if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Region)
         d.note("a region is `ball(r)`, `aabb(lo, hi)`, `tube(axis, r)` or `everywhere`");
     if (type.kind == lang::TypeExpr::Kind::List && v.kind == ValueKind::List &&
@@ -286,6 +288,7 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
     if (type.kind == lang::TypeExpr::Kind::Name && is_vector_type(type) && is_function(v))
         d.help("a vector is what the function gives where it is called: `vec3(1, 2, 3)`");
     if (v.kind == ValueKind::Shape) help_with_shape(d, what.of);
+    if (!d.fix && is_function(v)) help_with_uncalled(ev, d, v, place);
     if (type.kind == lang::TypeExpr::Kind::Name) help_with_value(ev, d, v, type.named, place);
     if (what.of == "rotate" && what.name == "angle" && v.kind == ValueKind::Vec)
         d.help("the angle comes first: `.rotate(angle, axis)`; `.rotate_euler([x, y, z])` turns "

@@ -75,9 +75,7 @@ static Value combine(Interpreter &ev, ir::ShapeKind kind, const std::vector<Valu
             Diagnostic &d = report(
                 ev, Code::TypeMismatch, places[i],
                 fmt::format("`{}` combines shapes, this is {}", op, describe(ev, values[i])));
-            if (is_numeric(values[i]) && numeric_type(ev, values[i]) == Type::Bool)
-                d.help(kind == ir::ShapeKind::Union ? "conditions are joined with `or`"
-                                                    : "conditions are joined with `and`");
+            help_with_operand(ev, d, values[i], kind == ir::ShapeKind::Union, places[i]);
             return poison();
         }
         if (dims != 0 && values[i].size != dims) {

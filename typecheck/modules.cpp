@@ -361,9 +361,13 @@ void declare_param(Interpreter &ev, const File &ast, const lang::Param &param,
         if (is_poison(value)) return fail();
     }
     if (!is_numeric(value) || value.kind == ValueKind::Field || value.kind == ValueKind::Mat) {
-        report(ev, Code::TypeMismatch, ast.exprs[param.value].span,
-               fmt::format("a parameter is a number, a bool, a vector or a color, this is {}",
-                           describe(ev, value)));
+        Diagnostic &d =
+            report(ev, Code::TypeMismatch, ast.exprs[param.value].span,
+                   fmt::format("a parameter is a number, a bool, a vector or a color, this is {}",
+                               describe(ev, value)));
+        if (value.kind == ValueKind::String)
+            d.help("a choice among words is one among numbers: `param kind = 0 in 0..1`, and "
+                   "`if kind == 0 { … }`");
         return fail();
     }
     value = sized(ev, value, ast.exprs[param.value].span, quoted(p.name));

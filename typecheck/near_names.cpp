@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace fathom::typecheck {
 
@@ -60,6 +61,7 @@ std::string nearest_fitting(Interpreter &ev, std::uint32_t frame, const std::str
             if (const std::string begun = shortest_begun_by(word, names);
                 !begun.empty() && word.size() > 2)
                 near = begun;
+        if (word.size() < short_word && wanted.object && near[0] != word[0]) return {};
         // of what is further off, the first letter at least is right
         const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
         const bool far =
@@ -89,6 +91,9 @@ std::string likely_name(Interpreter &ev, std::uint32_t frame, const std::string 
             (wanted.use == Use::Called || !is_function(*look_up(ev, frame, intern(ev, ours))));
         return fit ? ours : std::string();
     };
+    const bool capital = name[0] >= 'A' && name[0] <= 'Z';
+    if (capital && !way_from_elsewhere(name).empty() && name_from_elsewhere(name) == "repeat")
+        return {}; // a list, and no row of shapes
     if (std::string ours = known(name); !ours.empty()) return ours;
     if (!way_from_elsewhere(name).empty()) return {};
     if (!may_compare_names(ev, ev.symbol_names.size())) return {};
@@ -139,6 +144,7 @@ bool lacking(const Interpreter &ev, const std::string &name, const std::string &
 // `45*deg`, `5 * mm`: the unit touches its number, and lengths have none.
 static std::vector<Edit> unit_edit(const Interpreter &ev, const std::string &name, Span place) {
     if (name == "t") return {{place, "time"}};
+    if (name == "e") return {{place, "exp(1)"}};
     const bool length = name == "mm" || name == "cm";
     if (name != "deg" && !length) return {};
     const std::string_view before = text(ev.sources, {place.source, 0, place.begin});
@@ -165,7 +171,15 @@ static bool is_whole_argument(const Interpreter &ev, Span place) {
             break;
         }
     }
-    return before != all.npos && behind != all.npos &&
+    constexpr std::array<std::string_view, 16> takers = {
+        "rotate", "mirror",     "reflect", "orient", "plane", "slab",     "bend",         "twist",
+        "taper",  "turnaround", "tube",    "flip",   "spin",  "symmetry", "repeat_polar", "cross"};
+    const bool named = before != all.npos && all[before] == ':';
+    const std::size_t near = place.begin > farthest ? place.begin - farthest : 0;
+    const std::string_view ahead = all.substr(near, place.begin - near);
+    const bool taken = std::ranges::any_of(
+        takers, [&](std::string_view taker) { return ahead.find(taker) != ahead.npos; });
+    return (named || taken) && before != all.npos && behind != all.npos &&
            std::string_view("(,:").find(all[before]) != std::string_view::npos &&
            std::string_view("),").find(all[behind]) != std::string_view::npos;
 }
@@ -246,6 +260,10 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string
     }
     if (ev.in_field == 0 && (name == "p" || name == "pos" || name == "uv")) {
         std::string function;
+        if (const auto edit = of_user ? point_of_shape(ev, frame, place) : std::nullopt) {
+            d.help("the library's shapes are given no point: leave it away", {*edit});
+            return;
+        }
         if (const auto edit = of_user ? point_edit(ev, name, place, function) : std::nullopt)
             d.help(fmt::format("the point is the argument of a function: `{}({} => …)`", function,
                                name),
@@ -259,6 +277,14 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string
                "library's shapes stand outside of it, as `sphere(r).translate(c)`");
         return;
     }
+    if (Fix part = of_user ? part_of_point(ev, name, place) : Fix{}; !part.message.empty()) {
+        d.help(std::move(part.message), std::move(part.edits));
+        return;
+    }
+    for (const auto &remedy :
+         {without_call(ev, name, place), name_before_value(ev, frame, name, place)})
+        if (of_user && !d.fix && !remedy.message.empty()) d.help(remedy.message, remedy.edits);
+    if (d.fix) return;
     if (is_hex_color(name)) {
         d.help(fmt::format("a colour by its hexadecimal digits is `#{}`", name),
                {{place, "#" + name}});
@@ -266,6 +292,10 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string
     }
     if (const auto edit = of_user ? scene_edit(ev, name, place) : std::nullopt)
         d.help(std::string(way), {*edit});
+    else if (Fix alone =
+                 of_user && !way.empty() ? without_qualifier(ev, frame, name, place) : Fix{};
+             !alone.message.empty())
+        d.help(std::move(alone.message), std::move(alone.edits));
     else if (!way.empty())
         d.help(std::string(way), unit_edit(ev, name, place));
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{place, near}});

@@ -369,7 +369,14 @@ static Value combined(Interpreter &ev, lang::BinaryOp op, const Value &left, con
                        ? "the unit touches its number: `45deg`"
                        : "call it with a point: `f(p)`");
         if (a.kind == ValueKind::String) d.help("a value is joined to a string by `+`");
-        if (op == BinaryOp::Mul && a.kind == ValueKind::List)
+        const auto is_rows = [&](const Value &v) { // `[[1, 0], [0, 1]]`
+            return v.kind == ValueKind::List && !ev.lists[v.id].empty() &&
+                   (ev.lists[v.id][0].kind == ValueKind::List ||
+                    ev.lists[v.id][0].kind == ValueKind::Vec);
+        };
+        if (op == BinaryOp::Mul && (is_rows(a) || is_rows(b)))
+            d.help("a matrix is made of its columns: `mat2([1, 0], [0, 1])`");
+        else if (op == BinaryOp::Mul && a.kind == ValueKind::List)
             d.help("a list is made by a loop: `[for i in 0..3 { 0 }]`");
         const auto is_list = [&](const Value &v) {
             return v.kind == ValueKind::List ||

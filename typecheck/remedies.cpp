@@ -361,15 +361,30 @@ void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeN
     const bool list = written.starts_with('[') && written.ends_with(']');
     if (wanted == TypeName::Vec3 && list && is_numeric(v) && numeric_type(ev, v) == ir::Type::Vec2)
         d.help("a vec3 has three parts", {{{place.source, place.end - 1, place.end - 1}, ", 0"}});
+    if (wanted == TypeName::Vec2 && list && is_numeric(v) &&
+        numeric_type(ev, v) == ir::Type::Vec3) {
+        const std::size_t comma = written.rfind(',');
+        const auto at = static_cast<std::uint32_t>(place.begin + comma);
+        d.help("a flat shape lies in the xy plane, and its vectors have two parts",
+               {{{place.source, at, place.end - 1}, ""}});
+    }
     if (wanted == TypeName::Float && is_function(v))
         d.help(ev.in_field > 0 ? "a function gives a number where it is called: `f(p)`"
                                : "a function gives a number where it is called, `f(x)`; a shape is "
                                  "made of a function of the point by `implicit(f, within: …)`");
+    if (v.kind == ValueKind::String && !written.starts_with('"') &&
+        (wanted == TypeName::Color || wanted == TypeName::Material))
+        d.help("colours are written without quotes where they are named: `let c = red`");
     if (v.kind != ValueKind::String || !written.starts_with('"')) return;
     const std::string &inside = ev.strings[v.id];
     if ((wanted == TypeName::Float || wanted == TypeName::Int) &&
         parse_number(without_unit(inside)))
         d.help("a number is written without quotes", {{place, inside}});
+    else if (wanted == TypeName::Float || wanted == TypeName::Int)
+        d.help("a text is no number: one is written without quotes, as `2` or `45deg`");
+    if (wanted == TypeName::Vec3 && axis_text(ev, v, place).empty())
+        d.help("a text is no vector: one is written `[1, 2, 3]`, without quotes; a number fills "
+               "all three parts");
     if (const std::string axis = axis_text(ev, v, place); wanted == TypeName::Vec3 && !axis.empty())
         d.help("the axes are `X`, `Y` and `Z`, without quotes", {{place, axis}});
     if (wanted != TypeName::Color && wanted != TypeName::Material) return;
@@ -380,7 +395,10 @@ void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeN
         return;
     }
     const std::string color = named && !is_function(*named) ? inside : color_in(inside);
-    d.help("colours are written without quotes: `red`, `#ff0000`",
+    d.help(color.empty() ? fmt::format("no colour is called `{}`: one is `red`, `#8a5a2b`, or a "
+                                       "`material(diffuse: red)`",
+                                       short_name(inside))
+                         : "colours are written without quotes: `red`, `#ff0000`",
            color.empty() ? std::vector<Edit>{} : std::vector<Edit>{{place, color}});
 }
 

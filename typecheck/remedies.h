@@ -78,6 +78,37 @@ std::string_view way_of_type(std::string_view name);
 // How that is done here which they have a name for and the library has not; empty: nothing is known.
 std::string_view way_from_elsewhere(std::string_view name);
 
+// Where no table knows a thing (last_remedies.cpp). What there is for values of that kind; empty:
+// nothing is known.
+std::string_view what_there_is(const Value &object);
+// For a function where its value is wanted: the call, which is the edit where it needs no argument.
+void help_with_uncalled(Interpreter &ev, Diagnostic &d, const Value &v, Span place);
+// A call as it should be: the one in the description of the library's function, or made up for what
+// changes a shape; empty: none.
+std::string example_of(Interpreter &ev, std::string_view name, std::span<const Formal> formals);
+// For an argument too many: it goes, where it is the last and all are sound.
+void leave_last_away(const Interpreter &ev, Diagnostic &d, std::span<const Argument> args,
+                     const Argument &first);
+// `union()(a, b)`: the arguments stand in the first parentheses.
+void help_with_second_call(const Interpreter &ev, Diagnostic &d, Span call);
+// For `x`, `y`, `z` that nobody declared: a part of the point, or half of space where it is compared
+// in a call. An empty message: neither.
+Fix part_of_point(const Interpreter &ev, const std::string &name, Span place);
+// `translate(x, 1)`: the name of an argument, with a comma behind it.
+Fix name_before_value(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place);
+// For a number with a fraction where a whole one is wanted.
+void help_with_whole(const Interpreter &ev, Diagnostic &d, const Value &v, Span place);
+// For what is no shape beside `|` or `&`.
+void help_with_operand(Interpreter &ev, Diagnostic &d, const Value &v, bool united, Span place);
+// The `p` of GLSL's `sdBox(p, size)`, with its comma, in a call of one of the library's shapes.
+std::optional<Edit> point_of_shape(Interpreter &ev, std::uint32_t frame, Span place);
+// A type with the sign before it, to be left away.
+std::vector<Edit> type_away(const Interpreter &ev, Span type);
+// `list(…)`, `Some(…)`, `str("r = ", r)`: a call that can be left away.
+Fix without_call(const Interpreter &ev, const std::string &name, Span place);
+// `THREE.Vector3(1, 2, 3)`, of a module that is none: the library's function alone.
+Fix without_qualifier(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place);
+
 // What stands in the text there; an operand in parentheses where operators stand in it; an argument
 // with its name.
 std::string source_text(const Interpreter &ev, Span span);

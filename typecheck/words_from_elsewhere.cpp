@@ -107,6 +107,8 @@ constexpr Row names[] = {
     {"worley", "voronoi voronoinoise cellular cellnoise"},
     {"fbm", "fractalnoise"},
     {"rgb", "color color3 rgb255"},
+    {"material", "meshstandardmaterial standardmaterial meshphongmaterial meshbasicmaterial "
+                 "meshlambertmaterial meshphysicalmaterial"},
     {"hsv", "hsb hsl hsv2rgb"},
     {"palette", "gradient colorramp colormap"},
     {"image", "loadimage loadtexture imread"},
@@ -209,6 +211,16 @@ constexpr Row ways[] = {
      "append push pushback"},
     {"there is no Blender here: a shape is made by a call, as `sphere(1)`", "bpy"},
     {"there is no three.js here: a shape is made by a call, as `sphere(1)`", "THREE"},
+    {"there is no CadQuery here: a shape is made by a call, as `box([2, 1, 1])`", "cq cadquery"},
+    {"the library's names stand alone, as in `length(v)`", "linalg"},
+    {"there are no records: each part is a name of its own, and a list has its values",
+     "Object Map Dictionary"},
+    {"Euler's number is `exp(1)`, and its power `exp(x)`", "e euler E"},
+    {"it is `a * b + c`", "fma"},
+    {"two values are compared by `assert(a == b)`", "asserteq assertequal"},
+    {"a cut is `a - b`, a row of copies `.repeat(cell)`, and edges are rounded by "
+     "`rounded_box(size, r)`",
+     "modifiers modifier"},
     {"n numbers from a to b are `[for i in 0..n { mix(a, b, i / (n - 1)) }]`", "linspace"},
     {"numbers in steps are `range(first, last, step)`", "arange"},
     {"a list is made by `[for i in 0..n { … }]`", "Array Vec"},
@@ -228,7 +240,7 @@ constexpr Row ways[] = {
     {"a shape is turned by `.rotate(90deg, axis: X)`; `cylinder`, `torus` and such lie along Y",
      "orient"},
     {"edges are rounded by `rounded_box(size, r)`, or `.offset(r)` of a smaller shape",
-     "bevel chamfer modifiers rounded roundcorners roundedges"},
+     "bevel chamfer rounded roundcorners roundedges"},
     {"edges are rounded by `rounded_box(size, r)`, joints by `smooth_union(r) { … }`", "fillet"},
     {"what swings is computed of `time`: `sin(time)`", "osc"},
     {"a shape is given a colour or a material by `.paint(…)`",
@@ -268,8 +280,7 @@ constexpr Row ways[] = {
     {"a metal is `material(diffuse: gold, specular: gold, exponent: 200)`", "metal"},
     {"a plastic is `material(diffuse: red, specular: white, exponent: 50)`", "plastic"},
     {"there is nothing that light passes through; a gloss is `exponent: 500`", "glass"},
-    {"a material is `material(diffuse: red, exponent: 50)`",
-     "Material meshstandardmaterial standardmaterial"},
+    {"a material is `material(diffuse: red, exponent: 50)`", "Material"},
     {"a file is run as it stands: leave the `if` away", "__name__"},
 };
 
@@ -354,9 +365,10 @@ std::vector<std::string> names_within(std::string_view name) {
 
 bool is_needless_method(std::string_view name) {
     static const std::unordered_set<std::string_view> needless = {
-        "save",      "export",   "write_stl", "show",      "render_png",   "collect",     "iter",
-        "into_iter", "iter_mut", "to_vec",    "clone",     "copied",       "cloned",      "toArray",
-        "tolist",    "unwrap",   "freeze",    "subdivide", "smooth_shade", "add_to_scene"};
+        "shade_smooth", "save",         "export",      "write_stl", "show",   "render_png",
+        "collect",      "iter",         "into_iter",   "iter_mut",  "to_vec", "clone",
+        "copied",       "cloned",       "toArray",     "tolist",    "unwrap", "freeze",
+        "subdivide",    "smooth_shade", "add_to_scene"};
     return needless.contains(name);
 }
 

@@ -31,7 +31,30 @@ static bool wants_function(Interpreter &ev, const CallSite &site, const Value &v
     return false;
 }
 
+// `map(f, list)`, as Python has it: reported, with both in our order.
+static bool list_stands_first(Interpreter &ev, const CallSite &site, const std::vector<Value> &args,
+                              std::size_t f) {
+    const auto is_list = [](const Value &v) {
+        return v.kind == ValueKind::List || v.kind == ValueKind::Range || v.kind == ValueKind::Vec;
+    };
+    if (!is_function(args[0])) return true;
+    const auto other = std::ranges::find_if(args, is_list);
+    if (other == args.end()) return true;
+    const Span a = site.arg(0), b = site.arg(static_cast<std::size_t>(other - args.begin()));
+    Diagnostic &d =
+        report(ev, Code::TypeMismatch, a,
+               fmt::format("the list stands first in `{}`, the function last", site.name));
+    if (args.size() == 2 && f == 1 && !is_library_place(ev, a) && a.source == b.source)
+        d.help("change their places",
+               {{a, std::string(text(ev.sources, b))}, {b, std::string(text(ev.sources, a))}});
+    else
+        d.help(fmt::format("as in `{}`",
+                           f == 1 ? "map(list, x => 2 * x)" : "fold(list, 0, (a, b) => a + b)"));
+    return false;
+}
+
 static Value map_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
+    if (!list_stands_first(ev, site, args, 1)) return poison();
     auto list = want_list(ev, args[0], site.arg(0), "`map`");
     if (!list || !wants_function(ev, site, args[1], 1)) return poison();
     std::vector<Value> out;
@@ -44,6 +67,7 @@ static Value map_call(Interpreter &ev, const CallSite &site, std::vector<Value> 
 }
 
 static Value filter_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
+    if (!list_stands_first(ev, site, args, 1)) return poison();
     auto list = want_list(ev, args[0], site.arg(0), "`filter`");
     if (!list || !wants_function(ev, site, args[1], 1)) return poison();
     std::vector<Value> out;
@@ -58,6 +82,7 @@ static Value filter_call(Interpreter &ev, const CallSite &site, std::vector<Valu
 }
 
 static Value fold_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
+    if (!list_stands_first(ev, site, args, 2)) return poison();
     auto list = want_list(ev, args[0], site.arg(0), "`fold`");
     if (!list || !wants_function(ev, site, args[2], 2)) return poison();
     Value total = args[1];
@@ -192,7 +217,8 @@ static std::optional<double> seed_of(Interpreter &ev, const CallSite &site, cons
 // `random(0.2, 0.5)`: bounds elsewhere, a seed and its second number here.
 static void warn_of_bounds(Interpreter &ev, const CallSite &site, std::span<const Value> args) {
     const Span place = site.call;
-    const bool two = is(args[0], ValueKind::Float) && is_scalar(ev, args[1]) &&
+    const bool below = is(args[0], ValueKind::Int) && args[0].num[0] < 0; // no seed of a person's
+    const bool two = (is(args[0], ValueKind::Float) || below) && is_scalar(ev, args[1]) &&
                      is(args[2], ValueKind::None) && is(args[3], ValueKind::None);
     if (!two || ev.quiet > 0 || is_library_place(ev, place)) return;
     const std::string_view call = text(ev.sources, place); // of numbers as they are written
