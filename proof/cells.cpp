@@ -46,8 +46,11 @@ class Search {
         : machine_(machine), domain_(domain), whole_(whole), seen_in_all_(seen), aim_(aim),
           out_(out), all_(machine.all_steps()) {}
 
-    void run() {
+    // False: the table would be dropped, and is not made. `most`: of the mean bound beside the
+    // surface.
+    bool run(double most) {
         lay_out();
+        if (!promises(most)) return false;
         const Block whole{{0, 0, 0}, out_.count};
         look(whole, all_);
         find_near();
@@ -55,6 +58,7 @@ class Search {
         refine(whole, all_);
         find_ways();
         finish();
+        return true;
     }
     // Of the cells beside the surface, what a step is divided by.
     double mean_near() const {
@@ -194,6 +198,43 @@ class Search {
         machine_.run(box, steps);
         halves(block, machine_.needed(steps),
                [&](const Block &half, const Machine::Steps &fewer) { refine(half, fewer); });
+    }
+    // Whether the mean bound beside the surface can come below `most`: tried on some of the cells
+    // there, each with the work that it would have. So what gains nothing takes little.
+    bool promises(double most) {
+        constexpr std::size_t looked_at = 128, tried = 32, too_few = 12;
+        constexpr double doubt = 1.1; // of a mean over so many cells
+        constexpr std::size_t stride = 7919;
+        const std::size_t cells = holds_.size();
+        if (aim_.bends || cells < 4 * looked_at) return true; // by curvature they pay all the same
+        std::vector<Block> beside;
+        std::size_t looked = 0;
+        for (; looked < looked_at && beside.size() < tried; ++looked) {
+            const std::size_t i = looked * stride % cells;
+            const auto nx = std::size_t(out_.count[0]), ny = std::size_t(out_.count[1]);
+            const int x = int(i % nx), y = int(i / nx % ny), z = int(i / nx / ny);
+            const Block block{{x, y, z}, {x + 1, y + 1, z + 1}};
+            if (misses_zone(grown(block))) continue;
+            machine_.run(grown(block), all_);
+            const double bound = bound_here();
+            const Interval value = machine_.value(0);
+            const double reach = bound * *std::ranges::max_element(size_);
+            if (value.lo > reach || value.hi < -reach) continue;
+            out_.lipschitz[i] = bound, holds_[i] = held(value, bound);
+            beside.push_back(block);
+        }
+        if (beside.size() < too_few) return true;
+        near_count_ = cells * beside.size() / looked;
+        begun_ = machine_.work();
+        double sum = 0;
+        for (const Block &block : beside) {
+            refine_cell(block, grown(block), all_);
+            sum += out_.lipschitz[index(block.lo[0], block.lo[1], block.lo[2])];
+        }
+        near_count_ = done_ = 0;
+        std::ranges::fill(out_.lipschitz, 0);
+        std::ranges::fill(holds_, Holds::Nothing);
+        return sum <= most * doubt * double(beside.size());
     }
     void refine_cell(const Block &block, const Cell &box, const Machine::Steps &steps) {
         const std::size_t at = index(block.lo[0], block.lo[1], block.lo[2]);
@@ -343,8 +384,8 @@ std::optional<ir::CellBounds> bound_cells(Flattening &context, const Ranges &ran
         *std::ranges::max_element(slopes, {}, [](double x) { return std::isfinite(x) ? x : 0; });
     ir::CellBounds out;
     Search search(machine, domain, whole, std::isfinite(seen) ? seen : 0, aim, out);
-    search.run();
     // By curvature they pay all the same.
+    if (!search.run(whole / enough)) return std::nullopt;
     if (out.bend.empty() && search.mean_near() * enough > whole) return std::nullopt;
     return out;
 }
