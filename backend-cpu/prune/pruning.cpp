@@ -25,12 +25,21 @@ namespace {
 constexpr int bits_a_level = 2;
 
 struct Place {
-    std::array<std::int32_t, 3> at; // in cells of the finest level
+    std::array<std::int32_t, 3> at; // in cells of `level`
+    int level;
 };
+
+// Which of the 64 cells in the one of `level` holds a place.
+std::size_t child_at(const Place &place, int level) {
+    const int shift = bits_a_level * (place.level - level - 1);
+    const std::int32_t x = place.at[0] >> shift, y = place.at[1] >> shift, z = place.at[2] >> shift;
+    return static_cast<std::size_t>((x & 1) | (y & 1) << 1 | (z & 1) << 2 | (x & 2) << 2 |
+                                    (y & 2) << 3 | (z & 2) << 4);
+}
 
 void remove(PruneBlock *block) {
     if (!block) return;
-    for (PruneCell &cell : block->cells) remove(cell.below.load());
+    for (PruneCell &cell : block->cells) remove(cell.below.load()), remove(cell.exact.load());
     delete block;
 }
 
@@ -40,7 +49,7 @@ Boxes boxes_inside(const Pruning &pruning, const Place &place, int level) {
     Boxes boxes;
     boxes.count = max_boxes;
     const float side = std::ldexp(pruning.cube.side, -bits_a_level * (level + 1));
-    const int shift = bits_a_level * (pruning.settings.depth - level);
+    const int shift = bits_a_level * (place.level - level);
     for (std::size_t k = 0; k < max_boxes; ++k)
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::int32_t first = (place.at[axis] >> shift) << bits_a_level;
@@ -94,10 +103,11 @@ bool has_cut(const Selection &tape) {
     return std::ranges::any_of(tape.loops, [](const auto &rows) { return rows.cut.any(); });
 }
 
-// The cells of a block, their tapes made from that of `from`. Gives how many of them have a Cut by
-// which too many of their points are unknown.
+// The cells of a block, their tapes made from that of `from`, all of them for exact values alone
+// where the block is. Gives how many of them have a Cut by which too many of their points are unknown.
 int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
-         const PruneCell &cell, const PruneCell &from, int level, PruneBlock &block) {
+         const PruneCell &cell, const PruneCell &from, bool exact, PruneBlock &block) {
+    const int level = cell.level;
     const std::size_t at_once =
         from.tape.steps.size() > pruning.settings.long_tape ? max_boxes / 4 : max_boxes;
     std::array<bool, max_boxes> as_above{};
@@ -116,9 +126,11 @@ int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
             run_over(pruning.parts, evaluator.shortener, from.tape, part_of(boxes, k, at_once));
         PruneCell &made = block.cells[k];
         made.above = &cell;
+        made.level = static_cast<std::int8_t>(level + 1);
         pieces[k] = {block.steps.size(), block.loops.size(), block.packed.size()};
         const float minimum = evaluator.shortener.result_lo[box];
-        if (pruning.settings.far_cells && minimum >= pruning.settings.far * half_diagonal) {
+        if (pruning.settings.far_cells && !exact &&
+            minimum >= pruning.settings.far * half_diagonal) {
             made.far = minimum; // where exact values are wanted, the cell above computes them
             continue;
         }
@@ -132,7 +144,8 @@ int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
         if (as_above[k]) {
             made.cost = from.cost;
             made.shapes = from.shapes;
-            made.splits = level < 1 && pruning.settings.depth > 1;
+            made.splits = !exact && level < 1 && pruning.settings.depth > 1;
+            made.settled = true;
             ++evaluator.tally.cells;
             continue;
         }
@@ -144,8 +157,9 @@ int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
         made.cost = tape.cost;
         made.shapes = tape.shapes;
         // where cells get smaller and tapes hardly shorter, the shapes are closer than their blends
-        made.splits = level + 1 < pruning.settings.depth && tape.cost > pruning.settings.enough &&
-                      (level < 1 || tape.cost < 0.8f * cell.cost);
+        made.settled = level >= 1 && tape.cost >= 0.8f * cell.cost;
+        made.splits = !exact && level + 1 < pruning.settings.depth &&
+                      tape.cost > pruning.settings.enough && !made.settled;
         if (!made.splits && !is_long) packer.pack(tape, block.packed, block.operands);
         ++evaluator.tally.cells;
     }
@@ -166,31 +180,31 @@ int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
         tape_of.packed = std::span(block.packed).subspan(first.packed, end.packed - first.packed);
         tape_of.packed_operands = block.operands.data();
     }
-    evaluator.tally.bytes += 4 * (block.steps.size() + block.rows.size() + block.operands.size()) +
-                             sizeof(Step) * block.packed.size() +
-                             sizeof(Selection::Rows) * block.loops.size();
+    evaluator.tally.bytes +=
+        sizeof(PruneBlock) + 4 * (block.steps.size() + block.rows.size() + block.operands.size()) +
+        sizeof(Step) * block.packed.size() + sizeof(Selection::Rows) * block.loops.size();
     return unknown;
 }
 
 PruneBlock *make_block(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
-                       const Place &place, int level) {
+                       const Place &place, bool exact) {
     constexpr int too_many = max_boxes / 8;
-    const Boxes boxes = boxes_inside(pruning, place, level);
+    const Boxes boxes = boxes_inside(pruning, place, cell.level);
     auto block = std::make_unique<PruneBlock>();
-    if (fill(pruning, evaluator, boxes, cell, cell, level, *block) < too_many)
+    if (fill(pruning, evaluator, boxes, cell, cell, exact, *block) < too_many)
         return block.release();
     const PruneCell *from = &cell; // whose Cut is too near for what is in it: without one
     while (has_cut(from->tape)) from = from->above;
     block = std::make_unique<PruneBlock>();
-    fill(pruning, evaluator, boxes, cell, *from, level, *block);
+    fill(pruning, evaluator, boxes, cell, *from, exact, *block);
     return block.release();
 }
 
 const PruneBlock &below(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
-                        const Place &place, int level) {
+                        const Place &place) {
     if (const PruneBlock *there = cell.below.load(std::memory_order_acquire)) return *there;
     if (!cell.claimed.exchange(true)) {
-        cell.below.store(make_block(pruning, evaluator, cell, place, level),
+        cell.below.store(make_block(pruning, evaluator, cell, place, false),
                          std::memory_order_release);
         cell.below.notify_all();
     } else {
@@ -205,13 +219,6 @@ const PruneCell *find(const Pruning &pruning, CellEvaluator &evaluator, const Pl
     const auto shift_of = [&](int level) { // to cells of the level
         return bits_a_level * (pruning.settings.depth - level);
     };
-    const auto index_at = [&](int level) {
-        const int shift = shift_of(level + 1);
-        const std::int32_t x = place.at[0] >> shift, y = place.at[1] >> shift,
-                           z = place.at[2] >> shift;
-        return static_cast<std::size_t>((x & 1) | (y & 1) << 1 | (z & 1) << 2 | (x & 2) << 2 |
-                                        (y & 2) << 3 | (z & 2) << 4);
-    };
     CellEvaluator::Last &last = evaluator.last;
     int level = 0;
     const PruneCell *cell = &pruning.root;
@@ -219,15 +226,15 @@ const PruneCell *find(const Pruning &pruning, CellEvaluator &evaluator, const Pl
         const int shift = shift_of(last.level);
         if (place.at[0] >> shift == last.at[0] && place.at[1] >> shift == last.at[1] &&
             place.at[2] >> shift == last.at[2]) {
-            cell = &last.block->cells[index_at(last.level)];
+            cell = &last.block->cells[child_at(place, last.level)];
             level = last.level + 1;
         }
     }
     for (; cell->splits; ++level) {
-        const PruneBlock &block = below(pruning, evaluator, *cell, place, level);
+        const PruneBlock &block = below(pruning, evaluator, *cell, place);
         const int shift = shift_of(level);
         last = {&block, level, {place.at[0] >> shift, place.at[1] >> shift, place.at[2] >> shift}};
-        cell = &block.cells[index_at(level)];
+        cell = &block.cells[child_at(place, level)];
     }
     return cell;
 }
@@ -259,13 +266,15 @@ Pruning::Pruning(const Program &p, const Inputs &inputs, const Cube &c, const Pr
     root.tape = whole.selection(parts);
     root.cost = whole.cost;
     root.shapes = whole.shapes;
+    constexpr int deepest = 10; // of cells that rounding tells apart
+    finest = std::max(settings.depth, std::min(settings.depth + settings.finer, deepest));
     root.splits = settings.depth > 0 && whole.cost > settings.enough;
 }
 Pruning::~Pruning() { remove(root.below.load()); }
 
 CellEvaluator::CellEvaluator(const Pruning &pruning, const Inputs &inputs)
     : shortener(pruning.parts), scratch(make_scratch(pruning.program, inputs)), in(3),
-      out(pruning.program.results.size()) {}
+      out(pruning.program.results.size()), parted(static_cast<std::size_t>(pruning.finest) + 1) {}
 
 const PruneCell &cell_at(const Pruning &pruning, CellEvaluator &evaluator, float x, float y,
                          float z) {
@@ -276,8 +285,9 @@ const PruneCell &cell_at(const Pruning &pruning, CellEvaluator &evaluator, float
                         (py < pruning.cells) & (pz < pruning.cells);
     if (!inside) return pruning.root;
     return *find(pruning, evaluator,
-                 {static_cast<std::int32_t>(px), static_cast<std::int32_t>(py),
-                  static_cast<std::int32_t>(pz)});
+                 {{static_cast<std::int32_t>(px), static_cast<std::int32_t>(py),
+                   static_cast<std::int32_t>(pz)},
+                  pruning.settings.depth});
 }
 
 namespace {
@@ -314,10 +324,92 @@ void evaluate_exactly(const Pruning &pruning, CellEvaluator &evaluator, const Pr
     if (unknown > 0) evaluate_in_parent(pruning, evaluator, cell, in, out, unknown);
 }
 
-} // namespace
+// A place inside of the cube, as finely as cells are divided.
+Place finest_place(const Pruning &pruning, float x, float y, float z) {
+    const float scale =
+        std::ldexp(pruning.scale, bits_a_level * (pruning.finest - pruning.settings.depth));
+    return {{static_cast<std::int32_t>((x - pruning.cube.lo[0]) * scale),
+             static_cast<std::int32_t>((y - pruning.cube.lo[1]) * scale),
+             static_cast<std::int32_t>((z - pruning.cube.lo[2]) * scale)},
+            pruning.finest};
+}
 
-void evaluate_in(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
-                 const float *const *in, float *const *out, std::size_t n) {
+// The cells in it for exact values, where these points and others before have asked often enough of
+// a tape that takes long. (The root has points outside of the cube.)
+const PruneBlock *exact_cells(const Pruning &pruning, CellEvaluator &evaluator,
+                              const PruneCell &cell, const float *const *in, std::size_t n) {
+    if (cell.level == 0 || cell.level >= pruning.finest || cell.settled || n == 0 ||
+        cell.cost < pruning.settings.long_to_run)
+        return nullptr;
+    if (const PruneBlock *there = cell.exact.load(std::memory_order_acquire)) return there;
+    const auto points = static_cast<std::uint32_t>(n);
+    if (cell.asked.fetch_add(points, std::memory_order_relaxed) < pruning.settings.asked_often ||
+        pruning.exact_bytes.load(std::memory_order_relaxed) > pruning.settings.most_bytes ||
+        cell.exact_claimed.exchange(true))
+        return nullptr;
+    const std::uint64_t bytes = evaluator.tally.bytes;
+    const Place place = finest_place(pruning, in[0][0], in[1][0], in[2][0]);
+    PruneBlock *made = make_block(pruning, evaluator, cell, place, true);
+    pruning.exact_bytes += evaluator.tally.bytes - bytes;
+    cell.exact.store(made, std::memory_order_release);
+    return made;
+}
+
+// What a batch takes: vectors of points, and as long again to start its kernels.
+float time_of(const PruneCell &cell, std::size_t n) {
+    constexpr std::size_t vector = 16;
+    return cell.cost * static_cast<float>((n + vector - 1) / vector + 1);
+}
+
+void evaluate_by_parts(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
+                       const float *const *in, float *const *out, std::size_t n);
+
+// By the cells in it, each its points; false, and nothing, where all at once take less time.
+bool by_exact_cells(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
+                    const PruneBlock &block, const float *const *in, float *const *out,
+                    std::size_t n) {
+    CellEvaluator::Parted &parted = evaluator.parted[static_cast<std::size_t>(cell.level)];
+    std::array<std::uint32_t, max_boxes + 1> first{};
+    parted.child.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Place place = finest_place(pruning, in[0][i], in[1][i], in[2][i]);
+        const std::size_t child = child_at(place, cell.level);
+        parted.child[i] = static_cast<std::uint8_t>(child);
+        ++first[child + 1];
+    }
+    float time = 0;
+    for (std::size_t k = 0; k < max_boxes; ++k)
+        if (first[k + 1] > 0) time += time_of(block.cells[k], first[k + 1]);
+    if (time >= time_of(cell, n)) return false;
+    for (std::size_t k = 0; k < max_boxes; ++k) first[k + 1] += first[k];
+    const std::size_t results = pruning.program.results.size();
+    parted.order.resize(n), parted.in.resize(3 * n), parted.out.resize(results * n);
+    parted.to.resize(results);
+    std::array<std::uint32_t, max_boxes + 1> next = first;
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::uint32_t at = next[parted.child[i]]++;
+        parted.order[at] = static_cast<std::uint32_t>(i);
+        for (std::size_t axis = 0; axis < 3; ++axis) parted.in[axis * n + at] = in[axis][i];
+    }
+    for (std::size_t k = 0; k < max_boxes; ++k) {
+        const std::uint32_t count = first[k + 1] - first[k];
+        if (count == 0) continue;
+        const float *from[3];
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            from[axis] = parted.in.data() + axis * n + first[k];
+        for (std::size_t c = 0; c < results; ++c)
+            parted.to[c] = parted.out.data() + c * n + first[k];
+        evaluate_by_parts(pruning, evaluator, block.cells[k], from, parted.to.data(), count);
+    }
+    for (std::size_t c = 0; c < results; ++c)
+        for (std::size_t i = 0; i < n; ++i) out[c][parted.order[i]] = parted.out[c * n + i];
+    return true;
+}
+
+void evaluate_by_parts(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
+                       const float *const *in, float *const *out, std::size_t n) {
+    if (const PruneBlock *block = exact_cells(pruning, evaluator, cell, in, n))
+        if (by_exact_cells(pruning, evaluator, cell, *block, in, out, n)) return;
     evaluate_exactly(pruning, evaluator, cell, in, out, n);
     ++evaluator.tally.groups;
     if (&cell == &pruning.root) {
@@ -327,6 +419,13 @@ void evaluate_in(const Pruning &pruning, CellEvaluator &evaluator, const PruneCe
     evaluator.tally.near += n;
     evaluator.tally.kernels += double(cell.cost) * static_cast<double>(n);
     evaluator.tally.shapes += double(cell.shapes) * static_cast<double>(n);
+}
+
+} // namespace
+
+void evaluate_in(const Pruning &pruning, CellEvaluator &evaluator, const PruneCell &cell,
+                 const float *const *in, float *const *out, std::size_t n) {
+    evaluate_by_parts(pruning, evaluator, cell, in, out, n);
 }
 
 void evaluate(const Pruning &pruning, CellEvaluator &evaluator, const float *const *in,

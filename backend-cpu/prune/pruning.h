@@ -31,6 +31,12 @@ struct PruneSettings {
     // many parts that no cell takes apart takes bytes for each, not kilobytes.
     std::size_t long_tape = 10'000;
     float far = 1; // times half a cell's diagonal: from there on one number has to do
+    // Where so many points were asked of a tape of so many kernels, it is divided once more, by up to
+    // so many levels beyond `depth`. What is found there is exact, so no value depends on when.
+    std::uint32_t asked_often = 512;
+    float long_to_run = 128;
+    int finer = 3;
+    std::size_t most_bytes = 64 << 20; // of such cells
 };
 
 struct PruneBlock;
@@ -39,11 +45,17 @@ struct PruneCell {
     float far = 0; // above 0: the smallest value in it; exact values come from the cell above
     float cost = 0, shapes = 0; // of its tape
     bool splits = false;
+    bool settled = false; // its tape is hardly shorter than that of the cell above
+    std::int8_t level = 0;
     const PruneCell *above =
         nullptr; // the cell that contains it: evaluated where a Cut leaves points unknown
     Selection tape;
     mutable std::atomic<PruneBlock *> below{nullptr};
     mutable std::atomic<bool> claimed{false};
+    // Cells in it for exact values alone, once these were asked for often.
+    mutable std::atomic<PruneBlock *> exact{nullptr};
+    mutable std::atomic<bool> exact_claimed{false};
+    mutable std::atomic<std::uint32_t> asked{0};
 };
 
 // The hierarchy of cells of one program; shared by threads.
@@ -60,7 +72,9 @@ struct Pruning {
     const ShortTape whole;
     float slack = 0; // by which points may be outside of the cell that rounding finds for them
     float cells = 0, scale = 0; // of the finest level: along an axis, and in a unit of length
+    int finest = 0;             // level of cells for exact values alone
     PruneCell root;
+    mutable std::atomic<std::size_t> exact_bytes{0}; // that cells for exact values take
 };
 
 // One thread's memory.
@@ -94,6 +108,13 @@ struct CellEvaluator {
     std::vector<const PruneCell *> groups;
     std::vector<std::uint32_t> counts, firsts, next;
     std::vector<std::vector<float>> in, out;
+    struct Parted { // points of a cell by the cells in it, at each level
+        std::vector<std::uint8_t> child;
+        std::vector<std::uint32_t> order;
+        std::vector<float> in, out;
+        std::vector<float *> to;
+    };
+    std::vector<Parted> parted;
     std::vector<std::uint32_t> unknown;
     std::vector<float> tried; // values at some places of a cell in the making
     std::vector<float *> tried_to;

@@ -85,6 +85,11 @@ Answers check(const Program &program, PruneSettings settings = {}) {
     CHECK(exact.far == 0);
     const Answers bounds = compare(program, settings, 0.01f);
     CHECK(bounds.differ + bounds.above == 0);
+    settings.asked_often = 0, settings.long_to_run = 1;
+    for (const float limit : {std::numeric_limits<float>::infinity(), 0.01f}) {
+        const Answers finer = compare(program, settings, limit);
+        CHECK(finer.differ + finer.above == 0);
+    }
     return bounds;
 }
 
