@@ -119,34 +119,95 @@ struct Axis {
     }
 };
 
-std::optional<Around> found_around(Flattening &context, NodeId m, NodeId g) {
+// What a number g of the angle alone is at most, or of the angle and another number, and how steep it
+// is by the angle.
+struct AlongTurn {
+    NodeId angle;
+    std::optional<Turned> turned;
+    double most = 0, steep = 0;
+
+    double across() const { return steep * (turned ? std::fabs(turned->by) : 1); }
+};
+std::optional<AlongTurn> along_turn(Flattening &context, NodeId g) {
     Graph &graph = context.graph;
     const auto angle = angle_in(graph, g);
     if (!angle) return {};
-    std::optional<Turned> turned;
-    if (!reads_alone(graph, g, *angle) && !(turned = turned_in(graph, g, *angle))) return {};
-    const NodeId y = graph.arg(*angle, 0), x = graph.arg(*angle, 1);
-    const auto vanishing = Axis{graph, x, y}.of(m);
-    if (!vanishing) return {};
+    AlongTurn out{*angle, {}};
+    if (!reads_alone(graph, g, *angle) && !(out.turned = turned_in(graph, g, *angle))) return {};
     const NodeId turn = graph.component(graph.point(), 0);
-    const NodeId along = ir::substitute(graph, g, {{turned ? turned->sum : *angle, turn}});
+    const NodeId along = ir::substitute(graph, g, {{out.turned ? out.turned->sum : *angle, turn}});
     Domain line;
     constexpr double half_turn = std::numbers::pi * (1 + 1e-6);
-    line.box.p = {turned ? Interval::everything() : Interval(-half_turn, half_turn), Interval(0.0),
-                  Interval(0.0)};
+    line.box.p = {out.turned ? Interval::everything() : Interval(-half_turn, half_turn),
+                  Interval(0.0), Interval(0.0)};
     Budget budget;
     budget.instructions = max_instructions;
-    const double steep = bound_field(context, *context.ranges, along, line, budget).lipschitz,
-                 most = turned ? range_of(context, *context.ranges, along, line.box)[0].magnitude()
-                               : bound_magnitude(context, *context.ranges, along, line, budget);
-    const double radial = most * vanishing->slope,
-                 across = steep * vanishing->size * (turned ? std::fabs(turned->by) : 1);
+    out.steep = bound_field(context, *context.ranges, along, line, budget).lipschitz;
+    out.most = out.turned ? range_of(context, *context.ranges, along, line.box)[0].magnitude()
+                          : bound_magnitude(context, *context.ranges, along, line, budget);
+    return out;
+}
+
+Around around_of(Graph &graph, const AlongTurn &along, NodeId m, double by) {
+    const NodeId y = graph.arg(along.angle, 0), x = graph.arg(along.angle, 1);
+    Around out{along.angle, graph.make(Op::Make, ir::Type::Vec2, {x, y}), ir::rounding::up(by, 16)};
+    if (along.turned) {
+        out.vanishing = m, out.rest = along.turned->rest;
+        out.rest_by = ir::rounding::up(along.steep, 4);
+    }
+    return out;
+}
+
+std::optional<Vanishing> vanishing_of(Graph &graph, NodeId m, NodeId angle) {
+    return Axis{graph, graph.arg(angle, 1), graph.arg(angle, 0)}.of(m);
+}
+
+std::optional<Around> found_around(Flattening &context, NodeId m, NodeId g) {
+    Graph &graph = context.graph;
+    const auto angle = angle_in(graph, g);
+    if (!angle || !vanishing_of(graph, m, *angle)) return {};
+    const auto along = along_turn(context, g);
+    if (!along) return {};
+    const auto vanishing = vanishing_of(graph, m, along->angle);
+    const double radial = along->most * vanishing->slope,
+                 across = along->across() * vanishing->size;
     const double by = vanishing->radial ? std::hypot(radial, across) : radial + across;
     if (!std::isfinite(by)) return {};
-    Around out{*angle, graph.make(Op::Make, ir::Type::Vec2, {x, y}), ir::rounding::up(by, 16)};
-    if (turned)
-        out.vanishing = m, out.rest = turned->rest, out.rest_by = ir::rounding::up(steep, 4);
-    return out;
+    return around_of(graph, *along, m, by);
+}
+
+// m and b of m [cos(b), sin(b)], in either order and with any signs.
+struct PolarVector {
+    NodeId m, b;
+};
+std::optional<PolarVector> polar_vector(Graph &graph, NodeId id) {
+    const ir::Node node = graph[id];
+    if (node.type != ir::Type::Vec2 || (node.op != Op::Mul && node.op != Op::Make)) return {};
+    NodeId common;
+    if (node.op == Op::Mul)
+        for (int i = 0; i < 2; ++i)
+            if (const NodeId part = graph.arg(id, i); graph[part].op == Op::Splat)
+                common = graph.arg(part, 0), id = graph.arg(id, 1 - i);
+    if (graph[id].op != Op::Make || graph[id].count != 2) return {};
+    PolarVector out;
+    bool cosine = false, sine = false;
+    for (int i = 0; i < 2; ++i) {
+        NodeId part = graph.arg(id, i), m = common;
+        if (graph[part].op == Op::Neg) part = graph.arg(part, 0);
+        for (int k = 0; !common && graph[part].op == Op::Mul && k < 2; ++k)
+            if (const NodeId wave = graph.arg(part, k);
+                graph[wave].op == Op::Sin || graph[wave].op == Op::Cos) {
+                m = graph.arg(part, 1 - k), part = wave;
+                break;
+            }
+        const Op op = graph[part].op;
+        if (!m || (op != Op::Sin && op != Op::Cos)) return {};
+        (op == Op::Sin ? sine : cosine) = true;
+        const NodeId b = graph.arg(part, 0);
+        if (i == 1 && (m != out.m || b != out.b)) return {};
+        out = {m, b};
+    }
+    return cosine && sine ? std::optional(out) : std::nullopt;
 }
 
 } // namespace
@@ -158,6 +219,26 @@ std::optional<Around> around_axis(Flattening &context, NodeId product) {
     const NodeId a = graph.arg(product, 0), b = graph.arg(product, 1);
     if (const auto found = found_around(context, a, b)) return found;
     return found_around(context, b, a);
+}
+
+bool is_polar_vector(ir::Graph &graph, NodeId vector) {
+    return polar_vector(graph, vector).has_value();
+}
+
+std::optional<Around> vector_around_axis(Flattening &context, NodeId vector) {
+    Graph &graph = context.graph;
+    if (!context.ranges) return {};
+    const auto found = polar_vector(graph, vector);
+    if (!found) return {};
+    const auto angle = angle_in(graph, found->b);
+    if (!angle || !vanishing_of(graph, found->m, *angle)) return {};
+    const auto along = along_turn(context, found->b);
+    if (!along) return {};
+    const auto vanishing = vanishing_of(graph, found->m, along->angle);
+    if (!vanishing->radial) return {};
+    const double by = std::max(vanishing->slope, along->across() * vanishing->size);
+    if (!std::isfinite(by)) return {};
+    return around_of(graph, *along, found->m, by);
 }
 
 } // namespace fathom::proof

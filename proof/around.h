@@ -18,5 +18,8 @@ struct Around {
     double rest_by = 0;
 };
 std::optional<Around> around_axis(Flattening &context, NodeId product);
+// The same of m [cos(b), sin(b)], m of the vector's length and b of its angle.
+bool is_polar_vector(ir::Graph &graph, NodeId vector);
+std::optional<Around> vector_around_axis(Flattening &context, NodeId vector);
 
 } // namespace fathom::proof

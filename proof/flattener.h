@@ -90,12 +90,16 @@ struct Flattener {
     Slot mix(Scope &scope, NodeId id, Instruction out);
     Slot sum(Scope &scope, NodeId id, Instruction out);
 
+    void find_around(Scope &scope, NodeId id, Instruction &out);
+    void find_parallel(Scope &scope, NodeId id, Instruction &out);
     void find_radial(Scope &scope, NodeId id, Instruction &out);
     void find_univariate(Scope &scope, NodeId id, Instruction &out);
     // A product or quotient by numbers whose inverses meet them in the rest (rescaled.h).
     std::optional<NodeId> without_factors(Scope &scope, NodeId id);
     Slot product(Scope &scope, NodeId id, Instruction out);
 
+    NodeId in_scalar_factors(NodeId id, int depth = 0);
+    Slot power(Scope &scope, NodeId id, Instruction out);
     Slot quotient(Scope &scope, NodeId id, Instruction out);
 
     Slot vector(Scope &scope, NodeId id, Instruction out);

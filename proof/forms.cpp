@@ -355,8 +355,9 @@ std::optional<NodeId> round_edge(Graph &graph, NodeId id) {
             std::vector<NodeId> terms;
             greatest_of(graph, graph.arg(inside, 1 - k), terms, outside ? Op::Max : Op::Min);
             const int n = ir::components(graph[*v].type);
-            if (!graph.as_number(c) || graph.as_number(c) == 0.0 || int(terms.size()) != n)
-                continue;
+            const ir::Graph::Reads reads = graph.reads(c);
+            if (reads.point || reads.free_vars || graph.as_number(c) == 0.0) continue;
+            if (int(terms.size()) != n) continue;
             NodeId most;
             for (int m = 0; m < n; ++m) {
                 const NodeId part = component_of(graph, *v, m);

@@ -67,12 +67,18 @@ struct Distances {
 using Row = std::array<Interval, 3>;
 
 // A scalar base + w, or base - w where `negative`: base is the same at all points, w >= 0, and the
-// power-th root of w is no steeper than `slope`; of a power of infinity |grad w| <= slope w
-// (machine_raised.cpp). A slope of infinity: not known.
+// power-th root of w is no steeper than `slope`; the power is below 0, or 1 or more; of a power of
+// infinity |grad w| <= slope w (machine_raised.cpp). A slope of infinity: not known.
+// Where the power is a param's, it is known by its slot, and `power` has its sign and is as near to 0
+// as it may be.
 struct Raised {
     double slope = ir::rounding::infinity, power = 2;
     Interval base = 0.0;
     bool negative = false;
+    Slot param = 0; // 1 + the slot; 0: the power is a number
+    bool same_power(const Raised &other) const {
+        return power == other.power && param == other.param;
+    }
 };
 Raised either(const Raised &a, const Raised &b); // what holds of both
 
@@ -203,10 +209,23 @@ class Machine {
     Raised raised(Slot s) const;
     Raised grows_as_itself(Slot s) const;
     Raised raised_to(Slot u, double power) const;
+    Raised raised_by_exponent(const Instruction &instruction) const;
+    Raised raised_by_param(const Instruction &instruction) const;
+    Raised raised_wave(Slot s, bool from_below) const;
+    Raised raised_times(Slot w, Slot b) const;
+    Raised raised_in_parallel(const Instruction &instruction) const;
     Raised raised(const Instruction &instruction) const;
+    const Instruction *maker(Slot s) const;
+    struct Product {
+        Interval by = 1.0;
+        std::vector<Slot> factors;
+    };
+    bool gather(Slot s, Product &out, int depth = 0) const;
     Interval above_base(Slot s, const Raised &x) const;
-    double norm_of_inverse(Slot s, double e) const;
+    double norm_of_power(Slot s, double e) const;
+    double norm_of_product(Slot s, double e) const;
     double norm_by_raised(const Instruction &instruction) const;
+    void hold_waves_of_one(const Instruction &instruction);
     void hold_raised(const Instruction &instruction);
     Far far(Slot s, int component) const;
     void keep_far(Slot s, int component, Far found);

@@ -88,7 +88,7 @@ void Step::quotient() {
     const double length = n == 1 ? ratio : up(std::sqrt(squares), n + 4);
     const double by_divisor =
         std::min({times(times(ratio, most), norm(1)), times(length, machine.relative_[divisor]),
-                  times(greatest, machine.norm_of_inverse(divisor, 1))});
+                  times(greatest, machine.norm_of_power(divisor, -1))});
     finish(up(times(most, norm(0)) + by_divisor, 4), odd_divisor);
     if (machine.norm_[out] != infinity) machine.cause_[out] = machine.cause_[in.args[0]];
 }
@@ -174,6 +174,8 @@ void Step::power() {
                 dx = y * positive_power(x, y - Interval(1.0));
             else if (x.lo > 0)
                 dx = y * positive_power(x, y) / x;
+            else if (y.lo > 0) // of some powers, it is not (2.40)
+                dx = Interval::everything();
             else
                 singular = true;
             if (x.lo <= 0) dx = hull(dx, 0.0);

@@ -14,11 +14,11 @@ using ir::rounding::up;
 // What a value's gradient is, as a mean of two others (means.h), beside what its own rule says.
 void Machine::hold_mean(const Instruction &instruction) {
     const Slot out = instruction.out;
-    const auto [a, b, by_a, by_b, beyond] = *instruction.mean;
+    const auto [a, b, by_a, by_b, beyond, reach] = *instruction.mean;
     const std::uint32_t at_a = tape_.first[a], at_b = tape_.first[b];
     if (norm_[out] == infinity || norm_[a] == infinity || norm_[b] == infinity) return;
     if (odd_[at_a] || odd_[at_b]) return;
-    if (value_[at_a].magnitude() > mean_reach || value_[at_b].magnitude() > mean_reach) return;
+    if (value_[at_a].magnitude() > reach || value_[at_b].magnitude() > reach) return;
     for (std::size_t j = 0; j < 3; ++j) {
         const Interval of_a = Interval(by_a) * grad_[at_a][j],
                        of_b = Interval(by_b) * grad_[at_b][j];

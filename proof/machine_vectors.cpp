@@ -98,7 +98,12 @@ void Step::p_norm() {
     }
     const double weight = // |w|_2 of the weights w of the parts' gradients
         power.lo < 2 ? up(std::pow(double(components), 1 / power.lo - 0.5), 8) : 1;
-    const double norms = times(weight, together());
+    constexpr double most_power = 8; // beyond, single precision takes powers for 0 early (2.40)
+    double longest = 0;              // the weights' sum is at most a root of their number (Hölder)
+    for (int a = 0; a < last; ++a) longest = std::max(longest, norm(a));
+    const double sum = up(std::pow(double(components), 1 / power.lo), 8),
+                 all = times(weight, together()),
+                 norms = power.hi <= most_power ? std::min(all, times(sum, longest)) : all;
     for (std::size_t j = 0; j < 3; ++j) {
         double column = 0;
         for (int a = 0; a < last; ++a)
@@ -106,7 +111,7 @@ void Step::p_norm() {
         const double m = column == 0 ? 0 : std::min(times(weight, up(std::sqrt(column), 4)), norms);
         g[j] = {-m, m};
     }
-    set(0, {least, up(times(most, std::pow(double(components), 1 / power.lo)), 8)}, g);
+    set(0, {least, up(times(most, sum), 4)}, g);
     finish(norms, false);
 }
 

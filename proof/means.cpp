@@ -18,7 +18,9 @@ using ir::Graph;
 
 constexpr std::size_t max_nodes_of_mean = 96, max_pairs = 6, max_instructions = 20'000,
                       max_parts_of_mean = 32;
-constexpr double max_steepness = 1.1; // 1 + 2e
+constexpr double max_steepness = 1.3; // 1 + 2e
+// Sizes of both numbers; within the lesser ones exponentials of them are in single precision.
+constexpr double reaches[] = {1e6, 10};
 constexpr ir::OpSet opaque{Op::Point, Op::Loop, Op::LoopResult, Op::Call, Op::Cached};
 constexpr double rounding = 1e-9; // of the bound on a weight
 
@@ -109,10 +111,9 @@ std::vector<MovedPair> pairs_in(const Graph &graph, NodeId root) {
 }
 
 // How steep 2 G(d)/s - d is at most, for the params and times of the ranges.
-double steepness(Flattening &context, const Ranges &ranges, NodeId twice) {
+double steepness(Flattening &context, const Ranges &ranges, NodeId twice, double reach) {
     double most = 0;
-    for (const double end :
-         {-2 * mean_reach, 2 * mean_reach}) { // most turn where d is 0: on each side of it
+    for (const double end : {-2 * reach, 2 * reach}) { // most turn where d is 0: on each side of it
         Domain line;
         line.box.p = {Interval(std::min(end, 0.0), std::max(end, 0.0)), Interval(0.0),
                       Interval(0.0)};
@@ -123,10 +124,10 @@ double steepness(Flattening &context, const Ranges &ranges, NodeId twice) {
 }
 
 // The same, with the params that it reads in as many parts as that takes.
-double steepest(Flattening &context, NodeId twice) {
+double steepest(Flattening &context, NodeId twice, double reach) {
     const ir::Content content = ir::content_of(context.graph, twice);
     std::vector<Ranges> parts{*context.ranges};
-    std::vector<double> steep{steepness(context, parts[0], twice)};
+    std::vector<double> steep{steepness(context, parts[0], twice, reach)};
     while (parts.size() < max_parts_of_mean) {
         const auto worst = std::size_t(std::ranges::max_element(steep) - steep.begin());
         if (steep[worst] <= 1 + rounding) break;
@@ -140,22 +141,29 @@ double steepest(Flattening &context, NodeId twice) {
         if (!widest || range(*widest).width() == 0) break;
         Ranges upper = parts[worst];
         upper.params[*widest][0].lo = range(*widest).hi = range(*widest).middle();
-        steep[worst] = steepness(context, parts[worst], twice);
-        steep.push_back(steepness(context, upper, twice));
+        steep[worst] = steepness(context, parts[worst], twice, reach);
+        steep.push_back(steepness(context, upper, twice, reach));
         parts.push_back(std::move(upper));
     }
     return std::ranges::max(steep);
 }
 
-// How far beyond 0..1 the weights may lie; nothing where that is too far.
-std::optional<double> beyond(Flattening &context, NodeId scalar, const MovedPair &moved,
-                             double by) {
+// How far beyond 0..1 the weights may lie, and up to which sizes; nothing where that is too far.
+struct Weights {
+    double beyond, reach;
+};
+std::optional<Weights> weights_of(Flattening &context, NodeId scalar, const MovedPair &moved,
+                                  double by) {
     Graph &graph = context.graph;
     const NodeId d = graph.component(graph.point(), 0);
     const NodeId g = ir::substitute(graph, scalar, {{moved.a, d}, {moved.b, graph.number(0)}});
-    const double most = steepest(context, graph.sub(graph.mul(graph.number(2 / by), g), d));
-    if (most > max_steepness) return {};
-    return most <= 1 + rounding ? 0 : (most - 1) / 2;
+    const NodeId twice = graph.sub(graph.mul(graph.number(2 / by), g), d);
+    for (const double reach : reaches) {
+        const double most = steepest(context, twice, reach);
+        if (most <= max_steepness) return Weights{most <= 1 + rounding ? 0 : (most - 1) / 2, reach};
+        if (std::isfinite(most)) break;
+    }
+    return {};
 }
 
 } // namespace
@@ -170,8 +178,8 @@ std::optional<Mean> mean_of(Flattening &context, NodeId scalar) {
     for (const MovedPair &moved : pairs_in(context.graph, scalar)) {
         const auto by = Moves(context.graph, moved).of(scalar);
         if (!by || *by == 0) continue;
-        if (const auto more = beyond(context, scalar, moved, *by)) {
-            out = Mean{moved.a, moved.b, *by, *by * moved.other, *more};
+        if (const auto found = weights_of(context, scalar, moved, *by)) {
+            out = Mean{moved.a, moved.b, *by, *by * moved.other, found->beyond, found->reach};
             break;
         }
     }

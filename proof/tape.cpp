@@ -207,6 +207,8 @@ Slot Flattener::flatten_node(Scope &scope, NodeId id) {
             parts->parts.push_back(parts->power);
             return emit(scope, out, Form::PNorm, parts->parts);
         }
+        if (node.op == Op::Pow && node.type == ir::Type::Float)
+            return power(scope, id, std::move(out));
         break;
     case Look::Length: return emit(scope, out, Form::Norm, {graph.arg(id, 0)});
     case Look::Product: return product(scope, id, std::move(out));

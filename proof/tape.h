@@ -44,9 +44,9 @@ using Slot = std::uint32_t; // a value: components(type) numbers at Tape::first[
 template <class Id> struct MeanOf {
     Id a{}, b{};
     double by_a = 1, by_b = 1, beyond = 0;
+    double reach = 0; // the sizes of a and b up to which it is proved
 };
 using Mean = MeanOf<NodeId>;
-constexpr double mean_reach = 1e6; // the sizes of a and b up to which it is proved
 
 struct Instruction {
     Op op = Op::Const;
@@ -116,6 +116,16 @@ struct Instruction {
     };
     std::optional<FromAxis> from_axis; // of the angle between a vector and an axis (polar.h)
     std::optional<double> stands_at;   // its value, whatever the argument's: an angle's (winding.h)
+    // Of a power: what its exponent is of a number that is the same for all points, but not known.
+    struct Exponent {
+        Slot of = 0;
+        bool negative = false, inverse = false; // -k, 1/k
+    };
+    std::optional<Exponent> exponent;
+    // Of x y/(x + y), x y z/(x y + y z + z x), …: x, y, …; it is `parallel_by` times the inverse of the
+    // sum of their inverses.
+    std::vector<Slot> parallel;
+    double parallel_by = 1;
     NodeId node;
 };
 

@@ -34,6 +34,15 @@ std::vector<NodeId> Flattener::by_vector(std::vector<NodeId> parts) {
         });
         out.push_back(own.size() > 1 ? graph.swizzle(vector, own) : first);
     }
+    for (std::size_t i = 0; i < out.size(); ++i) // m cos(b) and m sin(b)
+        for (std::size_t k = i + 1; k < out.size(); ++k) {
+            if (graph[out[i]].op != Op::Mul || graph[out[k]].op != Op::Mul) continue;
+            const NodeId both = graph.make(Op::Make, ir::Type::Vec2, {out[i], out[k]});
+            if (!is_polar_vector(graph, both)) continue;
+            out[i] = both;
+            out.erase(out.begin() + std::ptrdiff_t(k));
+            break;
+        }
     return out;
 }
 
@@ -170,7 +179,10 @@ Slot Flattener::sum(Scope &scope, NodeId id, Instruction out) {
 }
 
 Slot Flattener::mix(Scope &scope, NodeId id, Instruction out) {
-    if (out.type == ir::Type::Float) find_interpolation(scope, id, out);
+    if (out.type == ir::Type::Float) {
+        find_mean(scope, id, out);
+        find_interpolation(scope, id, out);
+    }
     return emit_plain(scope, id, std::move(out));
 }
 
@@ -188,8 +200,8 @@ void Flattener::find_interpolation(Scope &scope, NodeId id, Instruction &out) {
 
 void Flattener::find_mean(Scope &scope, NodeId id, Instruction &out) {
     if (const auto mean = mean_of(context, id))
-        out.mean = {slot(scope, mean->a), slot(scope, mean->b), mean->by_a, mean->by_b,
-                    mean->beyond};
+        out.mean = {slot(scope, mean->a), slot(scope, mean->b), mean->by_a,
+                    mean->by_b,           mean->beyond,         mean->reach};
 }
 
 namespace {
@@ -251,6 +263,84 @@ void Flattener::find_univariate(Scope &scope, NodeId id, Instruction &out) {
     out.univariate = {slot(scope, *found->x), found->by};
 }
 
+// A product as one of scalars; of mix(a, b, a), a (1 + b - a).
+NodeId Flattener::in_scalar_factors(NodeId id, int depth) {
+    constexpr int max_depth = 6;
+    if (depth > max_depth) return id;
+    const ir::Node node = graph[id];
+    const auto again = [&](NodeId other) { return in_scalar_factors(other, depth + 1); };
+    if (node.op == Op::Mul) return graph.mul(again(graph.arg(id, 0)), again(graph.arg(id, 1)));
+    if (node.op == Op::Swizzle && node.type == ir::Type::Float)
+        if (const NodeId own = component_of(graph, id, 0); own != id) return again(own);
+    if (node.op == Op::Mix && graph.arg(id, 0) == graph.arg(id, 2)) {
+        const NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
+        const bool from_1 = graph[a].op == Op::Sub && graph.as_number(graph.arg(a, 0)) == 1.0;
+        const NodeId rest =
+            from_1 ? graph.add(graph.arg(a, 1), b) : graph.add(graph.number(1), graph.sub(b, a));
+        return graph.mul(again(a), rest);
+    }
+    return id;
+}
+
+// An exponent that is not known: k, -k, 1/k or -1/k, as they are written.
+Slot Flattener::power(Scope &scope, NodeId id, Instruction out) {
+    if (const auto e = graph.as_number(graph.arg(id, 1)); e && *e > 0 && *e < 1) {
+        const NodeId base = graph.arg(id, 0), apart = in_scalar_factors(base);
+        if (apart != base) return slot(scope, graph.make(Op::Pow, {apart, graph.arg(id, 1)}));
+    }
+    const auto still = [&](NodeId x) { return !graph.as_number(x) && !varies[slot(scope, x)]; };
+    NodeId of = graph.arg(id, 1);
+    Instruction::Exponent exponent;
+    const auto negated = [&] {
+        for (; graph[of].op == Op::Neg; of = graph.arg(of, 0)) exponent.negative ^= true;
+    };
+    if (!still(of)) return emit_plain(scope, id, std::move(out));
+    negated();
+    if (const auto above =
+            graph[of].op == Op::Div ? graph.as_number(graph.arg(of, 0)) : std::nullopt;
+        above && std::fabs(*above) == 1) {
+        exponent.inverse = true;
+        exponent.negative ^= *above < 0;
+        of = graph.arg(of, 1);
+        negated();
+    }
+    exponent.of = slot(scope, of);
+    out.exponent = exponent;
+    return emit_plain(scope, id, std::move(out));
+}
+
+// A product over the sum of what it is without each of its factors.
+void Flattener::find_parallel(Scope &scope, NodeId id, Instruction &out) {
+    constexpr std::size_t most_factors = 4;
+    const NodeId above = graph.arg(id, 0), below = graph.arg(id, 1);
+    if (out.type != ir::Type::Float || graph[above].op != Op::Mul || graph[below].op != Op::Add)
+        return;
+    std::vector<NodeId> factors, todo{above};
+    double by = 1;
+    while (!todo.empty()) {
+        const NodeId factor = todo.back();
+        todo.pop_back();
+        if (const auto x = graph.as_number(factor))
+            by *= *x;
+        else if (graph[factor].op == Op::Mul)
+            todo.insert(todo.end(), {graph.arg(factor, 0), graph.arg(factor, 1)});
+        else
+            factors.push_back(factor);
+        if (factors.size() > most_factors) return;
+    }
+    if (factors.size() < 2 || !(by > 0) || !std::isfinite(by)) return;
+    NodeId sum;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        NodeId rest;
+        for (std::size_t k = 0; k < factors.size(); ++k)
+            if (k != i) rest = rest ? graph.mul(rest, factors[k]) : factors[k];
+        sum = sum ? graph.add(sum, rest) : rest;
+    }
+    if (!same(graph, sum, below, &context.work)) return;
+    for (const NodeId factor : factors) out.parallel.push_back(slot(scope, factor));
+    out.parallel_by = by;
+}
+
 void Flattener::find_radial(Scope &scope, NodeId id, Instruction &out) {
     if (const auto found = radial(graph, id))
         out.along = {slot(scope, found->vector), slot(scope, found->factor), found->divides};
@@ -290,6 +380,17 @@ std::optional<NodeId> Flattener::without_factors(Scope &scope, NodeId id) {
     return divides ? graph.div(value, left) : graph.mul(value, left);
 }
 
+void Flattener::find_around(Scope &scope, NodeId id, Instruction &out) {
+    const auto around =
+        out.type == ir::Type::Float ? around_axis(context, id) : vector_around_axis(context, id);
+    if (!around || !cancelling.contains(around->angle)) return;
+    out.around = {.vector = slot(scope, around->vector), .by = around->by};
+    if (!around->rest) return;
+    out.around->vanishing = slot(scope, around->vanishing);
+    out.around->rest = slot(scope, around->rest);
+    out.around->rest_by = around->rest_by;
+}
+
 Slot Flattener::product(Scope &scope, NodeId id, Instruction out) {
     if (const auto smooth = hermite(graph, id)) return slot(scope, *smooth);
     if (graph.arg(id, 0) == graph.arg(id, 1))
@@ -299,15 +400,7 @@ Slot Flattener::product(Scope &scope, NodeId id, Instruction out) {
     if (const auto larger = without_factors(scope, id)) return slot(scope, *larger);
     for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
     if (out.type != ir::Type::Float && !ir::is_vector(out.type)) return emit(scope, std::move(out));
-    if (const auto around = around_axis(context, id);
-        around && cancelling.contains(around->angle)) {
-        out.around = {.vector = slot(scope, around->vector), .by = around->by};
-        if (around->rest) {
-            out.around->vanishing = slot(scope, around->vanishing);
-            out.around->rest = slot(scope, around->rest);
-            out.around->rest_by = around->rest_by;
-        }
-    }
+    find_around(scope, id, out);
     find_radial(scope, id, out);
     find_univariate(scope, id, out);
     return emit_by_pieces(scope, id, std::move(out), {id});
@@ -323,6 +416,7 @@ Slot Flattener::quotient(Scope &scope, NodeId id, Instruction out) {
     }
     if (const auto larger = without_factors(scope, id)) return slot(scope, *larger);
     find_radial(scope, id, out);
+    find_parallel(scope, id, out);
     return emit_plain(scope, id, std::move(out));
 }
 
@@ -332,6 +426,7 @@ Slot Flattener::vector(Scope &scope, NodeId id, Instruction out) {
             if (const NodeId m = graph.arg(id, i); ir::is_matrix(graph[m].type))
                 out.norm = matrix_norm(graph, m).value_or(out.norm);
     for (NodeId a : args_of(id)) out.args.push_back(slot(scope, a));
+    if (out.op == Op::Make) find_around(scope, id, out);
     return emit_turned(scope, id, std::move(out));
 }
 

@@ -266,7 +266,6 @@ constexpr std::array near_misses = {
     "p.y - 0.2 * (if p.x < 0 { length(vec3(p.x, p.z, 0.0007)) } else { length(p.xz) })",
     // norms of powers: two powers, no size
     "pow(pow(abs(p.x), 2.5) + pow(abs(p.y), 2.4), 1 / 2.5)",
-    "pow(pow(p.x, 2.5) + pow(p.y, 2.5), 1 / 2.5)",
     "pow(pow(abs(p.x), 0.9) + pow(abs(p.y), 0.9), 1 / 0.9)",
     "pow(pow(pow(abs(p.x), 4) + pow(abs(p.z), 4), 0.7) + pow(abs(p.y), 3), 1 / 3)",
     "pow(pow(abs(p.x), 1.2 + sin(time)) + pow(abs(p.y), 1.2 + sin(time)), 1 / (1.2 + sin(time)))",

@@ -1,0 +1,101 @@
+// A random search over sums of powers and their roots, as power smooth minima and maxima are
+// (lipschitz.md, 2.40): powers of whole, broken and negative exponents and of params, of numbers that
+// may be 0, joined by sums, quotients and inverses, and roots of these that fit, or nearly.
+// Whatever the checker accepts is measured (judge.h). FATHOM_EFFORT=10 is the long form.
+#include "judge.h"
+
+#include <catch2/catch.hpp>
+
+using namespace fathom;
+using namespace fathom::test;
+
+namespace {
+
+class PowerMean : public Chance {
+  public:
+    using Chance::Chance;
+
+    std::string scene() {
+        of_param_ = pick(4) == 0;
+        const double k = pick(4) == 0 ? 1 + 7 * random() : double(1 + pick(9));
+        k_ = of_param_ ? "k" : number(k);
+        std::string out =
+            of_param_ ? "param k = 3 in " + of({"1..4", "2..8", "3..3.5", "3..16"}) + "\n" : "";
+        out += "implicit(p => {\n";
+        const std::size_t parts = 2 + pick(2), style = pick(5);
+        for (std::size_t i = 0; i < parts; ++i) {
+            const std::string own = pick(10) == 0 ? power(name(i), pick(5)) : power(name(i), style);
+            out += "  let " + name(i) + " = " + part() + "\n";
+            out += "  let " + name(i) + "k = " + own + "\n";
+        }
+        const bool falls = style >= 3;
+        out += "  let m = " + (pick(8) == 0 ? odd_one() : joined(parts == 3, falls)) + "\n";
+        return out + "  " + root() + " - " + between(0.1, 0.8) + "\n}, within: ball(2))\n";
+    }
+
+  private:
+    bool of_param_ = false, sum_falls_ = false;
+    std::string k_;
+
+    static std::string name(std::size_t i) { return std::string(1, "abc"[i]); }
+    std::string vector() {
+        return "vec3(" + between(-1, 1) + ", " + between(-1, 1) + ", " + between(-1, 1) + ")";
+    }
+    std::string part() {
+        const std::string above = between(0.2, 1);
+        switch (pick(10)) {
+        case 0: return "length(p - " + vector() + ")";
+        case 1: return "max(dot(p, " + vector() + ") + 0.4, " + of({"0.1", "0.3", "0"}) + ")";
+        case 2: return "dot(p, " + vector() + ") + " + between(2, 5);
+        case 3: return "length(vec2(length(p.xz) - 0.8, p.y)) + " + of({"0", "0.3"});
+        case 4: return "abs(p.x) + " + above;
+        case 5: return "1.5 + " + between(0.1, 1) + " * sin(3 * p.y + p.z)";
+        case 6: return "length(max(abs(p - " + vector() + ") - 0.3, 0)) + " + above;
+        default: return "length(p - " + vector() + ") + " + above;
+        }
+    }
+    std::string power(const std::string &x, std::size_t style) {
+        const std::string up = "pow(" + x + ", " + k_ + ")";
+        switch (style) {
+        case 0: return between(0.5, 2) + " * " + up;
+        case 3: return "1 / " + up;
+        case 4: return "pow(" + x + ", -" + k_ + ")";
+        default: return up;
+        }
+    }
+    std::string joined(bool three, bool falls) {
+        sum_falls_ = falls;
+        if (pick(3) == 0) return three ? "ak + bk + ck" : "ak + bk";
+        if (falls || pick(3) == 0)
+            return three ? "1 / (1 / ak + 1 / bk + 1 / ck)" : "1 / (1 / ak + 1 / bk)";
+        return three ? of({"ak * bk * ck / (ak * bk + bk * ck + ck * ak)",
+                           "ck * (ak * bk) / (ak * ck + (bk * ck + ak * bk))"})
+                     : of({"ak * bk / (ak + bk)", "(bk * ak) / (ak + bk)",
+                           "0.5 * ak * bk / (bk + ak)"});
+    }
+    // What is nearly such.
+    std::string odd_one() {
+        return of({"ak * bk / (ak + 2 * bk)", "ak * bk / (ak + bk + 0.1)", "ak * ak / (ak + bk)",
+                   "ak / (ak + bk)", "ak * bk", "ak - 0.1 * bk", "ak / (ak + bk) * bk"});
+    }
+    std::string root() {
+        const std::string fits = sum_falls_ ? "-1 / " : "1 / ",
+                          inverse = sum_falls_ ? "1 / " : "-1 / ";
+        switch (pick(12)) {
+        case 0: return "sqrt(m)";
+        case 1: return "pow(m, " + between(0.1, 1.4) + ")";
+        case 2: return of({"1 / sqrt(m)", "m"});
+        case 3: return "1 / pow(m, " + inverse + k_ + ")";
+        default: return "pow(m, " + fits + k_ + ")";
+        }
+    }
+};
+
+} // namespace
+
+TEST_CASE("roots of sums of powers are refused, or are no steeper than proved") {
+    const Judged judged = judge_scenes<PowerMean>(effort(40), 1200);
+    CHECK(judged.wrong == 0);
+    CHECK(judged.accepted > judged.scenes / 2);
+    CHECK(judged.accepted < judged.scenes);
+}
