@@ -121,8 +121,8 @@ Json json_of(const v1::Measures &of, const MeasureCommand &command) {
         json["from"].push_back(json_of(of.mesh_box.lo[i], of.least[i]));
         json["to"].push_back(json_of(of.mesh_box.hi[i], of.greatest[i]));
     }
-    json["components"] = of.components;
-    json["genus"] = of.genus;
+    json["mesh_components"] = of.components;
+    json["mesh_genus"] = of.genus;
     json["rests_on"] = of.rests_on;
     return json;
 }

@@ -38,8 +38,8 @@ Json json_of(const v1::Mesh &mesh) {
     json["vertices"] = mesh.vertices.size();
     json["watertight"] = true;
     json["self_intersections"] = 0; // both by construction
-    json["components"] = c.components;
-    json["genus"] = c.genus;
+    json["mesh_components"] = c.components;
+    json["mesh_genus"] = c.genus;
     const auto everywhere = [&](double d) { return c.certified ? Json(d) : Json(); };
     json["mesh_to_surface"] = everywhere(c.mesh_to_surface);
     json["surface_to_mesh"] = everywhere(c.surface_to_mesh);

@@ -35,7 +35,7 @@ TEST_CASE("a solid's measures as a table and as JSON") {
     CHECK(holds(json["from"][2], -1.5));
     CHECK(holds(json["to"][1], 1));
     CHECK(json["unit"] == "cm");
-    CHECK((json["components"] == 1 && json["genus"] == 0));
+    CHECK((json["mesh_components"] == 1 && json["mesh_genus"] == 0));
     const Json deeper = Json::parse(
         shell(folder, "cat block.sdf | fathom measure - -D d=4 --resolution 24 --json").out);
     CHECK(holds(deeper["volume"], 8));
@@ -56,7 +56,7 @@ TEST_CASE("parts are measured by their names, and how far they are apart") {
     for (std::size_t k = 0; k < 4; ++k) CHECK(json["parts"][k]["name"] == names[k]);
     CHECK(json["parts"][1]["line"] == 3);
     CHECK(holds(json["parts"][1]["volume"], 1));
-    CHECK(json["parts"][2]["components"] == 2); // all passes of the loop
+    CHECK(json["parts"][2]["mesh_components"] == 2); // all passes of the loop
     CHECK(holds(json["clearances"][0], 1.5));
     CHECK(json["clearances"][1]["most"] == 0); // they have points in common
     const Json alone =

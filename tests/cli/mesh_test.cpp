@@ -40,9 +40,9 @@ TEST_CASE("--json prints the certificate, and says partial where something is un
     const Result made = shell(folder, "fathom mesh ball.sdf --resolution 20 --json -o a.stl");
     CHECK(made.exit == 0);
     CHECK(made.err.empty());
-    for (const char *part :
-         {"{\"status\":\"certified\",", "\"watertight\":true", "\"genus\":0", "\"components\":1",
-          "\"undecided_cells\":0", "\"rests_on\":[\"intervals\",\"single-precision\",\"bound\"]"})
+    for (const char *part : {"{\"status\":\"certified\",", "\"watertight\":true",
+                             "\"mesh_genus\":0", "\"mesh_components\":1", "\"undecided_cells\":0",
+                             "\"rests_on\":[\"intervals\",\"single-precision\",\"bound\"]"})
         CHECK(contains(made.out, part));
     CHECK(fs::exists(folder / "a.stl"));
     // thinner than any cell, over a large area
