@@ -8,6 +8,7 @@ namespace fathom::mesh {
 namespace {
 
 constexpr int finest_piece = 4; // divisions of a triangle into four
+constexpr int own_pieces = 2;   // … before edges of other cells are asked for, too
 constexpr std::size_t piece_of_mesh = 512;
 
 Real3 sum_of(const Triangle3 &piece) { return along(along(piece[0], piece[1], 1), piece[2], 1); }
@@ -60,7 +61,7 @@ double farthest_on(const Inquiry &inquiry, std::uint32_t number, Candidates &can
                                             distance(middle, piece[2])});
             const double enough = inquiry.allowed - radius;
             double d = first_root(inquiry, candidates.own, middle, enough);
-            if (d > enough && enough >= 0) {
+            if (d > enough && enough >= 0 && depth >= own_pieces) {
                 if (!candidates.found_near) {
                     Real3 lo = triangle[0], hi = triangle[0];
                     for (const Real3 &p : triangle)

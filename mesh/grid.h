@@ -4,6 +4,7 @@
 
 #include "mesh/octree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 #include <unordered_set>
@@ -63,29 +64,25 @@ class Grid {
   public:
     Grid(const Point &origin, double side) : origin_(origin), side_(side) {}
     void add(const Real3 &lo, const Real3 &hi, std::uint32_t what) {
-        each(lo, hi, [&](std::uint64_t key) { entries_.push_back({key, what}); });
+        each_column(lo, hi, [&](std::uint64_t first, std::uint64_t last) {
+            for (std::uint64_t key = first; key <= last; ++key) entries_.push_back({key, what});
+        });
     }
-    void sort() {
-        std::ranges::sort(entries_);
-        for (std::size_t k = 0; k < entries_.size(); ++k)
-            if (k == 0 || entries_[k].first != entries_[k - 1].first)
-                begins_[entries_[k].first] = static_cast<std::uint32_t>(k);
-    }
+    void sort() { std::ranges::sort(entries_); }
     // All that touch a box, each once.
     void find(const Real3 &lo, const Real3 &hi, std::vector<std::uint32_t> &found) const {
         found.clear();
-        each(lo, hi, [&](std::uint64_t key) {
-            const auto at = begins_.find(key);
-            if (at == begins_.end()) return;
-            for (std::size_t k = at->second; k < entries_.size() && entries_[k].first == key; ++k)
-                found.push_back(entries_[k].second);
+        each_column(lo, hi, [&](std::uint64_t first, std::uint64_t last) {
+            auto at = std::ranges::lower_bound(entries_, std::pair{first, std::uint32_t{0}});
+            for (; at != entries_.end() && at->first <= last; ++at) found.push_back(at->second);
         });
         std::ranges::sort(found);
         found.erase(std::unique(found.begin(), found.end()), found.end());
     }
 
   private:
-    template <class Do> void each(const Real3 &lo, const Real3 &hi, Do what) const {
+    // The cells that a box touches: those in a line along the last axis have one key after the other.
+    template <class Do> void each_column(const Real3 &lo, const Real3 &hi, Do what) const {
         std::array<std::int64_t, 3> from{}, to{};
         for (std::size_t i = 0; i < 3; ++i) {
             from[i] = static_cast<std::int64_t>(std::floor((lo[i] - origin_[i]) / side_));
@@ -93,12 +90,11 @@ class Grid {
         }
         for (std::int64_t x = from[0]; x <= to[0]; ++x)
             for (std::int64_t y = from[1]; y <= to[1]; ++y)
-                for (std::int64_t z = from[2]; z <= to[2]; ++z) what(key_of({x, y, z}));
+                if (from[2] <= to[2]) what(key_of({x, y, from[2]}), key_of({x, y, to[2]}));
     }
     Point origin_;
     double side_;
     std::vector<std::pair<std::uint64_t, std::uint32_t>> entries_;
-    std::unordered_map<std::uint64_t, std::uint32_t> begins_;
 };
 
 // Where cells were divided: the blocks of space about them.

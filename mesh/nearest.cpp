@@ -46,6 +46,46 @@ Real3 nearest_shares(const Real3 &p, const Real3 &a, const Real3 &b, const Real3
     return sum > 0 ? Real3{va / sum, vb / sum, vc / sum} : Real3{1, 0, 0};
 }
 
+// The bits of a number, two zeros after each.
+std::uint64_t spread(std::uint64_t x) {
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    return (x | x << 2) & 0x1249249249249249;
+}
+
+// Triangles by their middles in the order of a curve that fills space by octants (Morton 1966): halves
+// of it, and halves of these, lie together.
+void sort_along_curve(const Mesh &mesh, std::vector<std::uint32_t> &triangles) {
+    constexpr double steps = 1 << 21; // along each axis
+    const auto middle = [&](std::uint32_t number) {
+        Real3 m{};
+        for (const std::uint32_t v : mesh.triangles[number])
+            for (std::size_t i = 0; i < 3; ++i) m[i] += mesh.vertices[v][i] / 3.0;
+        return m;
+    };
+    Real3 lo = middle(triangles[0]), hi = lo;
+    for (const std::uint32_t t : triangles) {
+        const Real3 m = middle(t);
+        for (std::size_t i = 0; i < 3; ++i)
+            lo[i] = std::min(lo[i], m[i]), hi[i] = std::max(hi[i], m[i]);
+    }
+    const double longest = std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]});
+    const double scale = longest > 0 ? (steps - 1) / longest : 0;
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+    order.reserve(triangles.size());
+    for (const std::uint32_t t : triangles) {
+        const Real3 m = middle(t);
+        std::uint64_t key = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+            key |= spread(static_cast<std::uint64_t>(scale * (m[i] - lo[i]))) << i;
+        order.push_back({key, t});
+    }
+    std::ranges::sort(order);
+    for (std::size_t k = 0; k < order.size(); ++k) triangles[k] = order[k].second;
+}
+
 std::vector<std::uint32_t> all_of(const Mesh &mesh) {
     std::vector<std::uint32_t> numbers(mesh.triangles.size());
     std::iota(numbers.begin(), numbers.end(), 0u);
@@ -58,20 +98,33 @@ TriangleTree::TriangleTree(const Mesh &mesh) : TriangleTree(mesh, all_of(mesh)) 
 
 TriangleTree::TriangleTree(const Mesh &mesh, std::vector<std::uint32_t> triangles)
     : mesh_(mesh), order_(std::move(triangles)) {
-    std::vector<Point> middles; // of all triangles
-    for (const auto &t : mesh.triangles) {
-        Point m{};
-        for (const std::uint32_t v : t)
-            for (std::size_t i = 0; i < 3; ++i) m[i] += mesh.vertices[v][i] / 3;
-        middles.push_back(m);
-    }
     if (order_.empty()) return;
+    sort_along_curve(mesh_, order_);
     branches_.push_back({{}, {}, 0, static_cast<std::uint32_t>(order_.size()), 0});
-    for (std::uint32_t k = 0; k < branches_.size(); ++k) divide(k, middles);
+    for (std::uint32_t k = 0; k < branches_.size(); ++k) divide(k);
+    for (std::size_t k = branches_.size(); k-- > 0;)
+        enclose(branches_[k]); // the parts of one come after it
 }
 
-void TriangleTree::divide(std::uint32_t number, std::vector<Point> &middles) {
-    Branch branch = branches_[number];
+void TriangleTree::divide(std::uint32_t number) {
+    Branch &branch = branches_[number];
+    if (branch.count <= few_triangles) return;
+    const std::uint32_t first = branch.first, count = branch.count, half = count / 2;
+    branch.children = static_cast<std::uint32_t>(branches_.size());
+    branch.count = 0;
+    branches_.push_back({{}, {}, first, half, 0});
+    branches_.push_back({{}, {}, first + half, count - half, 0});
+}
+
+void TriangleTree::enclose(Branch &branch) const {
+    if (branch.count == 0) {
+        const Branch &a = branches_[branch.children], &b = branches_[branch.children + 1];
+        for (std::size_t i = 0; i < 3; ++i) {
+            branch.lo[i] = std::min(a.lo[i], b.lo[i]);
+            branch.hi[i] = std::max(a.hi[i], b.hi[i]);
+        }
+        return;
+    }
     branch.lo = branch.hi = mesh_.vertices[mesh_.triangles[order_[branch.first]][0]];
     for (std::uint32_t k = branch.first; k < branch.first + branch.count; ++k)
         for (const std::uint32_t v : mesh_.triangles[order_[k]])
@@ -79,23 +132,6 @@ void TriangleTree::divide(std::uint32_t number, std::vector<Point> &middles) {
                 branch.lo[i] = std::min(branch.lo[i], mesh_.vertices[v][i]);
                 branch.hi[i] = std::max(branch.hi[i], mesh_.vertices[v][i]);
             }
-    if (branch.count > few_triangles) {
-        std::size_t axis = 0;
-        for (std::size_t i = 1; i < 3; ++i)
-            if (branch.hi[i] - branch.lo[i] > branch.hi[axis] - branch.lo[axis]) axis = i;
-        const auto begin = order_.begin() + branch.first;
-        const std::uint32_t half = branch.count / 2;
-        std::nth_element(
-            begin, begin + half, begin + branch.count, [&](std::uint32_t a, std::uint32_t b) {
-                return middles[a][axis] != middles[b][axis] ? middles[a][axis] < middles[b][axis]
-                                                            : a < b;
-            });
-        branch.children = static_cast<std::uint32_t>(branches_.size());
-        branches_.push_back({{}, {}, branch.first, half, 0});
-        branches_.push_back({{}, {}, branch.first + half, branch.count - half, 0});
-        branch.count = 0;
-    }
-    branches_[number] = branch;
 }
 
 std::optional<Nearest> TriangleTree::nearest(const Real3 &p, double within, double enough) const {

@@ -32,7 +32,8 @@ class TriangleTree {
                       count = 0;    // of the triangles, in `order_`; count 0: of two branches
         std::uint32_t children = 0; // the first
     };
-    void divide(std::uint32_t branch, std::vector<Point> &middles);
+    void divide(std::uint32_t branch);
+    void enclose(Branch &branch) const;
     const Mesh &mesh_;
     std::vector<Branch> branches_;
     std::vector<std::uint32_t> order_;
