@@ -259,8 +259,14 @@ std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, c
         cpu::run_steps(field.parts, evaluator.ranges, here);
         for (std::uint32_t n = 0; n < part.writes; ++n)
             slopes.by_slot[field.parts.slots[part.first_slot + n]] = {};
+        // One number all over the box, as the copy of a repetition: it does not change.
+        const bool runs = step.kind == cpu::StepKind::Run && !step.once;
+        for (std::uint32_t n = 0; runs && n < std::min(part.writes, part.operands); ++n)
+            if (const std::uint32_t to = operands[n]; !slopes.shared(to))
+                slopes.by_slot[slopes.slot(to)].known =
+                    evaluator.ranges.lo[to] == evaluator.ranges.hi[to];
         if (!plain || slopes.shared(operands[0])) continue;
-        slopes.by_slot[slopes.slot(operands[0])] = made;
+        if (made.known) slopes.by_slot[slopes.slot(operands[0])] = made;
         const double slope = made.known ? least_slope(made) : 0;
         if (!(slope > 0)) continue;
         Level level{{k, operands[0]},
