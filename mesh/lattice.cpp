@@ -5,8 +5,8 @@
 
 namespace fathom::mesh {
 
-std::optional<Lattice> make_lattice(const ir::Box &box, double side, int extra) {
-    constexpr double fewest = 32; // ulps in half a cell of the finest level
+std::optional<Lattice> make_lattice(const ir::Box &box, double side, int extra, int deeper) {
+    constexpr double fewest = 32, enough = 128; // ulps in half a cell of the finest level
     double longest = 0, largest = 0;
     for (std::size_t i = 0; i < 3; ++i) {
         longest = std::max(longest, box.hi[i] - box.lo[i]);
@@ -18,12 +18,12 @@ std::optional<Lattice> make_lattice(const ir::Box &box, double side, int extra) 
     lattice.level = static_cast<int>(std::ceil(std::log2(count)));
     // All that matters is below 2^24 ulps.
     lattice.ulp = std::ldexp(1.0, std::ilogb(1.01 * (largest + 4 * side)) - 23);
-    for (; extra >= 0; --extra) {
-        const double halves = std::floor(std::ldexp(side, -extra - 1) / lattice.ulp);
-        if (halves < fewest) continue;
+    for (int below = extra + deeper; below >= 0; --below) {
+        const double halves = std::floor(std::ldexp(side, -below - 1) / lattice.ulp);
+        if (halves < (below > extra ? enough : fewest)) continue;
         const double odd = std::fmod(halves, 2) == 1 ? halves : halves - 1;
         lattice.unit = odd * lattice.ulp;
-        lattice.depth = lattice.level + extra;
+        lattice.depth = lattice.level + below;
         for (std::size_t i = 0; i < 3; ++i) {
             // The box lies in the middle.
             const double middle = 0.5 * (box.lo[i] + box.hi[i]) / (2 * lattice.unit);

@@ -29,9 +29,10 @@ struct Lattice {
 };
 
 // A lattice about a finite box, a cell farther to each side at least, whose cells of `level` are no
-// longer than `side`, by at most a 32nd shorter. `extra` levels lie below, or as many as floats can
-// tell apart. None: they cannot tell cells of that size apart where the box is.
-std::optional<Lattice> make_lattice(const ir::Box &box, double side, int extra);
+// longer than `side`, by at most a 32nd shorter. `extra` levels lie below, and `deeper` more as long
+// as cells are shorter by a 128th at most; or as many as floats can tell apart. None: they cannot tell
+// cells of that size apart where the box is.
+std::optional<Lattice> make_lattice(const ir::Box &box, double side, int extra, int deeper = 0);
 
 inline constexpr int max_level = 13; // 8,192 cells a side
 

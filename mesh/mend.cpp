@@ -1,18 +1,21 @@
 #include "mesh/mend.h"
 
+#include "mesh/thin.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace fathom::mesh {
 namespace {
 
-constexpr int deeper = 3;                     // than what is searched without a certificate
+constexpr int deeper = 7; // than what is searched without a certificate, at most
 constexpr std::size_t least_growth = 500'000; // of the octree, in nodes
 constexpr double nodes_a_cell = 16; // that dividing one once may take, with its neighbours
 constexpr std::size_t few_beside =
     64;                          // cells in doubt that are small enough: what lies beside is not
 constexpr int deepest_blind = 4; // levels that are tried where nothing shows,
 constexpr std::size_t few_blind = 32; // … or all, in so many drawing cells at most
+constexpr int sampled_levels = 6;     // that samples at even steps tell
 constexpr int most_rounds = 12;
 // A round that divides all that is in doubt halves it or more: surface goes through half of a cell's
 // parts. Where some of it is out of reach the rounds go on while they take a quarter.
@@ -35,11 +38,18 @@ void add_leaves_about(const Octree &octree, const Cell &cell, std::vector<Cell> 
     }
 }
 
+// How far below a drawing cell something shows. `wall`: that was measured, of a wall or a gap that may
+// go through all of it; else it is likely to be a tip or an edge, or is not known.
+struct Depth {
+    int levels = 0;
+    bool wall = false;
+};
+
 // A place whose doubt may be mended: a cell that is to be divided, and by how many levels, as far as
 // the field tells.
 struct Patient {
     Cell cell;
-    int levels = 0;
+    Depth depth;
 };
 
 // The larger leaves about cells in doubt: the mesh ends in one of them, before a tip that no corner of
@@ -54,7 +64,7 @@ void add_larger_beside(const Octree &octree, const std::vector<const Cell *> &ce
                                    [&](const Cell &near) { return near.level >= cell->level; }),
                     about.end());
     }
-    for (const Cell &cell : about) patients.push_back({cell, 1});
+    for (const Cell &cell : about) patients.push_back({cell, {1, true}});
     const auto number = [](const Patient &patient) { return patient.cell.node; };
     std::ranges::stable_sort(patients, {}, number);
     const auto same = [](const Patient &x, const Patient &y) { return x.cell.node == y.cell.node; };
@@ -68,7 +78,8 @@ std::array<std::int64_t, 3> block_of(const Lattice &lattice, const Cell &cell) {
 
 // How far below a drawing cell signs at corners show what lies about a point: so many levels that
 // cells are no thicker than the piece of solid or of space next to it. None: nothing shows.
-std::optional<int> levels_that_show(const Lattice &lattice, Evaluator &evaluator, const Point &at) {
+std::optional<Depth> depth_that_shows(const Lattice &lattice, Evaluator &evaluator,
+                                      const Point &at) {
     constexpr int steps = 128; // a finest cell each, one drawing cell to both sides
     Points points;
     points.add(at);
@@ -92,20 +103,26 @@ std::optional<int> levels_that_show(const Lattice &lattice, Evaluator &evaluator
         if (from >= 0) thinnest = std::min(thinnest, k - from);
         from = k;
     }
-    if (from < 0) return std::nullopt;
     int levels = 1;
-    while (levels < 6 && (64 >> levels) > thinnest) ++levels;
-    return levels;
+    while (from >= 0 && levels < sampled_levels && (64 >> levels) > thinnest) ++levels;
+    if (from >= 0 && levels < sampled_levels) return Depth{levels, true};
+    const Thin thin = thin_at(evaluator, lattice, side, at); // looks closer
+    if (!(thin.thickness > 0)) return from >= 0 ? std::optional(Depth{levels}) : std::nullopt;
+    while (levels < lattice.depth - lattice.level && std::ldexp(side, -levels) > thin.thickness)
+        ++levels;
+    return Depth{levels};
 }
 
-// What dividing a cell by so many levels takes, in nodes, if surface goes through all its parts.
+// What dividing a cell so deep takes, in nodes, if surface goes through all its parts.
 double nodes_for(const Patient &patient) {
-    return nodes_a_cell * std::ldexp(1.0, 2 * (patient.levels - 1));
+    const auto [levels, wall] = patient.depth;
+    return nodes_a_cell *
+           std::ldexp(1.0, 2 * ((wall ? levels : std::min(levels, deepest_blind)) - 1));
 }
 
 // How deep drawing cells are to be divided for their doubts, by their key: found out when they are first
 // in doubt.
-using Depths = std::unordered_map<std::uint64_t, int>;
+using Depths = std::unordered_map<std::uint64_t, Depth>;
 
 // All cells that might be divided for a certificate's doubts, each once, and how deep.
 struct Patients {
@@ -150,23 +167,27 @@ Patients patients(const Made &made, const Certificate &certificate, const Field 
     std::vector<const Doubt *> first; // of their drawing cells
     for (Doubt &doubt : doubts) {
         doubt.block = key_of(block_of(lattice, doubt.cell));
-        if (depths.emplace(doubt.block, 0).second) first.push_back(&doubt);
+        if (depths.emplace(doubt.block, Depth{}).second) first.push_back(&doubt);
     }
     // A place where a gap closes shows nothing; a few of them are divided as far as can be.
-    const int blind =
-        std::min(first.size() <= few_blind ? 6 : deepest_blind, lattice.depth - lattice.level);
-    std::vector<int> found(first.size());
+    const int all = lattice.depth - lattice.level;
+    const int blind = first.size() <= few_blind ? all : std::min(deepest_blind, all);
+    std::vector<Depth> found(first.size());
     in_parallel(
         first.size(), threads, progress, [&] { return Evaluator(field); },
         [&](Evaluator &evaluator, std::size_t k) {
-            found[k] = levels_that_show(lattice, evaluator, first[k]->at).value_or(blind);
+            found[k] = depth_that_shows(lattice, evaluator, first[k]->at).value_or(Depth{blind});
         });
     for (std::size_t k = 0; k < first.size(); ++k) depths[first[k]->block] = found[k];
     std::vector<const Cell *> small;
     for (const Doubt &doubt : doubts) { // cells may be one level smaller than is likely to do
-        const int levels = lattice.level + depths[doubt.block] - doubt.cell.level;
-        if (levels >= 0)
-            result.all.push_back({doubt.cell, std::max(levels, 1)});
+        const auto [levels, wall] = depths[doubt.block];
+        const int left = lattice.level + levels - doubt.cell.level;
+        // What may be too deep to afford is divided as deep as samples at even steps tell.
+        const int first_left = std::min(left, lattice.level + sampled_levels - doubt.cell.level);
+        if (left >= 0)
+            result.all.push_back(
+                {doubt.cell, {std::max(first_left > 0 ? first_left : left, 1), wall}});
         else
             small.push_back(&doubt.cell);
     }

@@ -12,7 +12,7 @@ struct Mended {
 };
 
 // Divides cells that the certificate leaves undecided, and those with places that it leaves unproved,
-// and makes the mesh and its certificate again, until all is decided, cells are 64 times smaller than
+// and makes the mesh and its certificate again, until all is decided, cells are 1,024 times smaller than
 // those that the surface is drawn by, or to divide them so far would make the octree grow by more
 // than half a million nodes, and more than it was large; or until a round changes nothing, or little
 // where some doubt is out of reach (docs/meshes.md, 6). What is undecided then is listed.

@@ -166,7 +166,7 @@ Made make_mesh(const ir::Scene &scene, const Settings &settings) {
     const double side =
         settings.side > 0 ? settings.side : longest / std::max(settings.resolution, 1);
     const std::optional<Lattice> lattice =
-        make_lattice(made.box, side, settings.extra + settings.deeper);
+        make_lattice(made.box, side, settings.extra, settings.deeper);
     if (!lattice) return fail(Failure::TooFine);
 
     const Field field(scene, settings.time, settings.bounds);

@@ -156,7 +156,7 @@ TEST_CASE("mending has an end, and what is undecided then is listed") {
 }
 
 TEST_CASE("mending ends where no round gains, and alike however many threads there are") {
-    // A plate far thinner than the finest cell, and small enough that all of it is divided that far.
+    // A plate far thinner than the finest cell: it is divided as deep as the work allows.
     const driver::Compilation c = driver::compile_text(
         "mesh.sdf", "sphere(1) | box([0.1, 0.1, 0.00001]).translate(z: 2)", "", {});
     REQUIRE(c.good());
@@ -170,7 +170,7 @@ TEST_CASE("mending ends where no round gains, and alike however many threads the
         CHECK_FALSE(result.certificate.certified());
         CHECK(result.certificate.undecided.size() > 10);
         for (const mesh::Cell &cell : result.certificate.undecided)
-            CHECK(cell.level == lattice.depth);
+            CHECK(cell.level > lattice.level);
         // One for each level, one that still found seams, and the one that showed it was in vain.
         CHECK(result.rounds <= lattice.depth - lattice.level + 2);
         CHECK(result.rounds == all[0].rounds);
