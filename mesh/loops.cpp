@@ -1,5 +1,7 @@
 #include "mesh/loops.h"
 
+#include "mesh/ambiguous.h"
+
 #include <algorithm>
 #include <unordered_map>
 
@@ -102,13 +104,29 @@ Pass pass_of(const Octree &octree, const Crossing &crossing, std::int32_t number
     return pass;
 }
 
-// The segments of one face: inside, between two crossings, the solid is on one side of each.
-bool join(std::span<const Pass> passes, Loops &loops) {
+// Whether the passes of a face, more than one segment's, are through whole edges of its owner: so two
+// signs are at its corners by turns, and nothing smaller is about it.
+bool by_turns(const Octree &octree, const Loops &loops, std::span<const Pass> passes,
+              const Cell &owner) {
+    return passes.size() == 4 && std::ranges::all_of(passes, [&](const Pass &pass) {
+               return loops.crossings[static_cast<std::size_t>(pass.crossing)].length ==
+                      octree.lattice.cells(owner.level);
+           });
+}
+
+// The segments of one face: inside, between two crossings, the solid is on one side of each; or, where
+// the solid is joined over the face, what is empty.
+bool join(const Octree &octree, std::span<const Pass> passes, Loops &loops) {
     const std::size_t n = passes.size();
     if (n % 2 != 0) return false;
     for (std::size_t k = 0; k < n; ++k)
         if (passes[k].entering == passes[(k + 1) % n].entering) return false;
-    const std::size_t first = passes[0].entering ? 0 : 1;
+    const Face of =
+        face_of(loops.crossings[static_cast<std::size_t>(passes[0].crossing)], passes[0].face);
+    const bool joined =
+        of.owner.level < octree.settled && by_turns(octree, loops, passes, of.owner) &&
+        octree.nodes[static_cast<std::size_t>(of.owner.node)].joins(of.axis, of.high);
+    const std::size_t first = passes[0].entering != joined ? 0 : 1;
     for (std::size_t k = first; k < n + first; k += 2) {
         const Pass &from = passes[k % n], &to = passes[(k + 1) % n];
         const Face face =
@@ -174,14 +192,17 @@ void join_faces(const Octree &octree, const Scope &scope, Loops &loops,
         for (last = first; last < passes.size() && passes[last].key == passes[first].key;) ++last;
         const Crossing &crossing =
             loops.crossings[static_cast<std::size_t>(passes[first].crossing)];
-        const Cell owner = face_of(crossing, passes[first].face).owner;
+        const Face face = face_of(crossing, passes[first].face);
+        const Cell &owner = face.owner;
         const std::span<const Pass> here = std::span(passes).subspan(first, last - first);
         // Where only some are looked for the faces at the end of these lack passes.
-        if (!join(here, loops) && has_any(scope, loops, here)) {
+        if (!join(octree, here, loops) && has_any(scope, loops, here)) {
             ++loops.torn;
             loops.torn_at = crossing.low;
         }
-        if (last - first > 2 && owner.level < octree.settled && scope.has(owner))
+        if (here.size() > 2 && owner.level < octree.settled && scope.has(owner) &&
+            (!by_turns(octree, loops, here, owner) ||
+             octree.nodes[static_cast<std::size_t>(owner.node)].unclear(face.axis, face.high)))
             tangled.push_back(owner);
     }
 }
@@ -230,6 +251,24 @@ bool whole_edges(const Octree &octree, const Loops &loops, const Patch &patch) {
     return true;
 }
 
+// Whether several patches of one cell can be drawn apart. Above the settled level only those that a
+// face tells apart may be: what else there is is looked for in parts.
+bool apart(const Octree &octree, const Loops &loops, std::span<const Patch *const> patches) {
+    const auto whole = [&](const Patch *patch) { return whole_edges(octree, loops, *patch); };
+    if (!std::ranges::all_of(patches, whole)) return false;
+    const Cell &cell = patches[0]->cell;
+    if (cell.level >= octree.settled) return true;
+    // The margins of vertices have to be more than what rounds them.
+    constexpr double least = 4096;
+    if (octree.lattice.side(cell.level) < least * octree.lattice.ulp) return false;
+    for (std::size_t k = 0; k < patches.size(); ++k)
+        for (std::size_t n = 0; n < k; ++n)
+            if (!share_face(loops, *patches[k], *patches[n]) ||
+                !plane_between(octree.lattice, loops, *patches[k], *patches[n]))
+                return false;
+    return true;
+}
+
 void find_patches(const Octree &octree, const Scope &scope, Loops &loops,
                   std::vector<Cell> &tangled) {
     for (std::size_t c = 0; c < loops.crossings.size(); ++c)
@@ -238,6 +277,7 @@ void find_patches(const Octree &octree, const Scope &scope, Loops &loops,
                 loops.crossings[c].patches[q] == none && scope.has(loops.crossings[c].cells[q]))
                 follow(loops, static_cast<std::int32_t>(c), quarter);
     std::vector<std::int32_t> only(octree.nodes.size(), none); // by node: its first patch
+    auto &several = loops.several;
     for (std::size_t p = 0; p < loops.patches.size(); ++p) {
         Patch &patch = loops.patches[p];
         std::int32_t &first = only[static_cast<std::size_t>(patch.cell.node)];
@@ -245,12 +285,19 @@ void find_patches(const Octree &octree, const Scope &scope, Loops &loops,
             first = static_cast<std::int32_t>(p);
             continue;
         }
-        patch.alone = loops.patches[static_cast<std::size_t>(first)].alone = false;
+        Patch &other = loops.patches[static_cast<std::size_t>(first)];
+        if (other.alone) several.push_back({patch.cell.node, static_cast<std::size_t>(first)});
+        patch.alone = other.alone = false;
+        several.push_back({patch.cell.node, p});
     }
-    for (const Patch &patch : loops.patches)
-        if (!patch.alone &&
-            (patch.cell.level < octree.settled || !whole_edges(octree, loops, patch)))
-            tangled.push_back(patch.cell);
+    std::ranges::sort(several);
+    for (std::size_t from = 0, to; from < several.size(); from = to) {
+        for (to = from; to < several.size() && several[to].first == several[from].first;) ++to;
+        std::vector<const Patch *> patches;
+        for (std::size_t k = from; k < to; ++k)
+            patches.push_back(&loops.patches[several[k].second]);
+        if (!apart(octree, loops, patches)) tangled.push_back(patches[0]->cell);
+    }
 }
 
 Loops loops_in(const Octree &octree, const Scope &scope, unsigned threads, Progress &progress) {

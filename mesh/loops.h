@@ -45,7 +45,8 @@ struct Loops {
     std::vector<Crossing> crossings;
     std::vector<Segment> segments;
     std::vector<Patch> patches;
-    std::vector<std::int32_t> members; // of patches: crossings
+    std::vector<std::int32_t> members;                         // of patches: crossings
+    std::vector<std::pair<std::int32_t, std::size_t>> several; // patches not alone, by their node
     // Leaves above the settled level whose surface is in more than one piece, or crosses a face more
     // than once, and those below it with several pieces and smaller leaves beside them: to be
     // divided.

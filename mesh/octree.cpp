@@ -1,5 +1,6 @@
 #include "mesh/octree.h"
 
+#include "mesh/ambiguous.h"
 #include "mesh/seams.h"
 #include "mesh/thin.h"
 
@@ -83,7 +84,7 @@ std::vector<Branch> divide_top(Octree &octree, const Field &field, const OctreeS
             octree.nodes[static_cast<std::size_t>(branches[number].cell.node)].children = first;
             for (int k = 0; k < 8; ++k) {
                 const auto part = static_cast<std::size_t>(k);
-                octree.nodes.push_back({none, none, made[number].space[part], 0});
+                octree.nodes.push_back({none, none, made[number].space[part], 0, 0});
                 if (made[number].space[part] == Space::Open)
                     below.push_back(
                         {{first + k, level + 1, corner(branches[number].cell.at, half, k)},
@@ -121,6 +122,7 @@ void sign(Divider &divider, const Lattice &lattice, const cpu::ShortTape &tape,
     for (const Cell &cell : cells) {
         std::uint8_t &signs = nodes[static_cast<std::size_t>(cell.node)].signs;
         signs = 0;
+        nodes[static_cast<std::size_t>(cell.node)].faces = 0;
         for (int c = 0; c < 8; ++c) {
             const auto at = std::ranges::lower_bound(
                 divider.keys, corner_key(corner(cell.at, lattice.cells(cell.level), c)));
@@ -128,6 +130,7 @@ void sign(Divider &divider, const Lattice &lattice, const cpu::ShortTape &tape,
                 signs |= static_cast<std::uint8_t>(1 << c);
         }
     }
+    join_corners(divider.evaluator, tape, lattice, cells, nodes);
 }
 
 // Divides cells of one level, all with one tape; gives the open parts. A cell whose parts are all
@@ -160,7 +163,7 @@ std::vector<Cell> parts_of(Divider &divider, const Lattice &lattice, const cpu::
             nodes[static_cast<std::size_t>(cell.node)].children = first;
             for (int k = 0; k < 8; ++k) {
                 const Space s = space[static_cast<std::size_t>(k)];
-                nodes.push_back({none, none, s, 0});
+                nodes.push_back({none, none, s, 0, 0});
                 if (s == Space::Open)
                     open.push_back(
                         {first + k, level + 1, corner(cell.at, lattice.cells(level + 1), k)});

@@ -24,6 +24,11 @@ struct Node {
     Space space = Space::Open;
     // Of an open leaf: bit c is set where the field is not positive at corner c.
     std::uint8_t signs = 0;
+    // Of its faces whose corners have two signs by turns: bit 2 axis + end where the solid corners are
+    // joined over the face, and six bits higher where that is not clear.
+    std::uint16_t faces = 0;
+    bool joins(std::size_t axis, bool high) const { return faces >> (2 * axis + high) & 1; }
+    bool unclear(std::size_t axis, bool high) const { return faces >> (6 + 2 * axis + high) & 1; }
     bool crossed() const { return signs != 0 && signs != 0xff; }
 };
 

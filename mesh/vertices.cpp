@@ -1,5 +1,6 @@
 #include "mesh/vertices.h"
 
+#include "mesh/ambiguous.h"
 #include "mesh/qef.h"
 
 #include <algorithm>
@@ -213,8 +214,28 @@ Point placed(const Vector &x, const Room &room) {
     return p;
 }
 
-// Where the planes of a patch meet. Of a cell with several patches the middle of its crossings: so
-// patches do not meet (docs/meshes.md, 3).
+// Whether a place lies on a patch's side of the planes between it and the others of its cell.
+bool on_own_side(const Lattice &lattice, const Loops &loops, const Patch &patch, const Point &at) {
+    std::array<double, 3> share{};
+    for (std::size_t i = 0; i < 3; ++i)
+        share[i] =
+            (double(at[i]) - lattice.at(i, patch.cell.at[i])) / lattice.side(patch.cell.level);
+    const auto node = [](const auto &entry) { return entry.first; };
+    for (const auto &[_, other] :
+         std::ranges::equal_range(loops.several, patch.cell.node, {}, node)) {
+        if (&loops.patches[other] == &patch) continue;
+        const Patch &that = loops.patches[other];
+        const bool first = &patch < &that; // of two patches both ask for the same plane
+        const auto plane =
+            plane_between(lattice, loops, first ? patch : that, first ? that : patch);
+        if (!plane || !((first ? 1 : -1) * plane->height(share) > share_of_margin)) return false;
+    }
+    return true;
+}
+
+// Where the planes of a patch meet. Of a cell with several patches that has to be on its own side of
+// the planes between them, or it is the middle of its crossings: so patches do not meet (docs/meshes.md,
+// 4).
 void place_patch(const Lattice &lattice, const Loops &loops, const Patch &patch, Vertices &vertices,
                  Point &at, Point &normal, bool &smooth) {
     const auto members = std::span(loops.members).subspan(patch.first, patch.count);
@@ -235,13 +256,16 @@ void place_patch(const Lattice &lattice, const Loops &loops, const Patch &patch,
     for (const std::int32_t c : members)
         smooth = smooth &&
                  dot(vertices.edge_normals[static_cast<std::size_t>(c)], normal) > smooth_cosine;
-    at = placed(patch.alone ? meeting_point(planes, room.lo, room.hi) : middle, room);
+    at = placed(meeting_point(planes, room.lo, room.hi), room);
+    if (!patch.alone && !on_own_side(lattice, loops, patch, at)) at = placed(middle, room);
 }
 
-// A step towards the surface along the gradient, where the surface is smooth: planes meet beside a
-// curved one. It is taken only where it ends nearer to 0 and in the cell.
+// A step towards the surface along the gradient: planes meet beside a curved one, and where an edge's
+// normal was taken next to a corner they meet beside that. It is taken only where it ends nearer to 0
+// and in the cell, and at an edge or a corner only from farther than a 1,024th of the cell's side.
 void approach(Memory &memory, const cpu::ShortTape &tape, const Lattice &lattice,
-              const Loops &loops, const Group &group, Vertices &vertices) {
+              const Loops &loops, const Group &group, const std::vector<std::uint8_t> &smooth,
+              Vertices &vertices) {
     memory.points.clear();
     for (const std::uint32_t p : group.members) memory.points.add(vertices.in_cell[p]);
     gradients_at(memory.evaluator, tape, memory.points, memory.gradients);
@@ -259,7 +283,8 @@ void approach(Memory &memory, const cpu::ShortTape &tape, const Lattice &lattice
                 squares > 0 ? -double(before[k]) * memory.gradients[1 + i][k] / squares : 0;
             x[i] = vertices.in_cell[p][i] + step;
             if (!(std::fabs(step) <= 0.25 * lattice.side(cell.level)) ||
-                std::fabs(before[k]) < 1e-4 * lattice.side(cell.level))
+                std::fabs(before[k]) <
+                    (smooth[k] ? 1e-4 : share_of_margin) * lattice.side(cell.level))
                 x[i] = vertices.in_cell[p][i];
         }
         moved.add(placed(x, room_of(lattice, cell)));
@@ -294,7 +319,9 @@ void place_on_face(const Lattice &lattice, const Loops &loops, std::size_t numbe
     const double at = lattice.at(axis, corner_at[axis]);
     Room room = room_of(lattice, segment.owner);
     room.lo[axis] = room.hi[axis] = at;
-    if (segment.alone && loops.patches[p].alone && loops.patches[q].alone) {
+    // In the hull of what it joins where others may be beside it.
+    const bool alone = segment.alone && loops.patches[p].alone && loops.patches[q].alone;
+    if (alone) {
         const Vector x = passage(vertices.in_cell[p], vertices.in_cell[q], axis, at);
         bool through = true;
         for (std::size_t i = 0; i < 3; ++i)
@@ -309,7 +336,7 @@ void place_on_face(const Lattice &lattice, const Loops &loops, std::size_t numbe
         for (std::size_t i = 0; i < 3; ++i)
             middle[i] += 0.5 * vertices.on_edge[static_cast<std::size_t>(c)][i];
     vertices.on_face[number] =
-        placed(segment.alone ? meeting_point_on(planes, axis, at, room.lo, room.hi) : middle, room);
+        placed(alone ? meeting_point_on(planes, axis, at, room.lo, room.hi) : middle, room);
 }
 
 } // namespace
@@ -359,16 +386,18 @@ Vertices place_vertices(const Octree &octree, const Field &field, const Loops &l
     in_parallel(
         by_cell.size(), threads, progress, [&] { return Memory(field); },
         [&](Memory &memory, std::size_t g) {
-            Group smooth_ones{by_cell[g].task, {}};
+            Group alone{by_cell[g].task, {}};
+            std::vector<std::uint8_t> smooth;
             for (const std::uint32_t p : by_cell[g].members) {
                 bool is_smooth = false;
                 place_patch(octree.lattice, loops, loops.patches[p], vertices, vertices.in_cell[p],
                             vertices.cell_normals[p], is_smooth);
-                if (is_smooth && smooth_ones.task != none) smooth_ones.members.push_back(p);
+                if (!loops.patches[p].alone || alone.task == none) continue;
+                alone.members.push_back(p);
+                smooth.push_back(is_smooth);
             }
-            if (!smooth_ones.members.empty())
-                approach(memory, tape_of(smooth_ones), octree.lattice, loops, smooth_ones,
-                         vertices);
+            if (!alone.members.empty())
+                approach(memory, tape_of(alone), octree.lattice, loops, alone, smooth, vertices);
         });
     if (progress.cancelled) return vertices;
     for (std::size_t s = 0; s < loops.segments.size(); ++s)

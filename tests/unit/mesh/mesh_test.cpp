@@ -89,6 +89,33 @@ TEST_CASE("sharp edges and corners are kept") {
     }
 }
 
+TEST_CASE(
+    "edges along diagonals of the lattice take no more triangles than others, and no crumbs") {
+    // An even number of cells puts the lattice's corners into the planes of the edges.
+    for (const char *text :
+         {"tetrahedron(1)", "box(2) - tetrahedron(0.8)",
+          "box(1).rotate(45deg, axis: X) | box(1).rotate(45deg, axis: Y).translate(x: 1.5)"})
+        for (const int resolution : {12, 24, 31}) {
+            INFO(text << " at " << resolution);
+            const mesh::Made along = mesh_of(text, resolution);
+            const test::Survey found = checked(along),
+                               turned = checked(mesh_of("(" + std::string(text) +
+                                                            ").rotate(0.1, axis: [1, 2, 3])",
+                                                        resolution));
+            CHECK(found.genus == 0);
+            CHECK(found.components == turned.components);
+            CHECK(found.volume == Approx(turned.volume).epsilon(0.01));
+            const double side = along.octree.lattice.side(along.octree.lattice.level);
+            CHECK(double(along.mesh.triangles.size()) < 8 * found.area / (side * side));
+        }
+    const mesh::Made ridge = mesh_of("tetrahedron(1)", 24);
+    CHECK(ridge.mesh.triangles.size() < 10'000);
+    std::size_t on_edge = 0; // from [1, 1, 1] to [1, -1, -1]: it is drawn, and sharp
+    for (const mesh::Point &p : ridge.mesh.vertices)
+        on_edge += std::fabs(p[1] - p[2]) < 1e-3 && p[0] > 0.57;
+    CHECK(on_edge > 20);
+}
+
 TEST_CASE("solids that touch, and ones finer than the cells, still give a closed mesh") {
     for (const char *text : {"box(1) | box(1).translate([1, 1, 0])",      // along an edge
                              "box(1) | box(1).translate([1, 1, 1])",      // at a corner
