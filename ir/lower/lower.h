@@ -11,7 +11,9 @@
 //            shapes by max with their box's distance
 //   hit      marched, carrying which surface decides
 //   shaded   what normals, occlusion and penumbrae look at: marched, but no bound above 1 divides it,
-//            so that a looser proof changes no picture. Equal to marched where no bound is above 1
+//            so that a looser proof changes no picture; a field of one's own is read over its slope
+//            at the surface, and what is scaled by a vector as its distance (shaded.cpp). Equal to
+//            marched where none of this is
 //   radius   marched, and the safe radius by curvature (shading.h); only where some displacement
 //            has it, and through the shapes that safe_radius.cpp names
 // A shape evaluated at more than one point becomes a function of its own (named after its library

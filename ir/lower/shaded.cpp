@@ -1,6 +1,7 @@
-// The fifth reading: the marched field with no bound above 1 in it (lower.h). A bound below 1
-// divides it all the same: it makes the field steeper, and a union with it would otherwise take it
-// for nearer than it is.
+// The fifth reading: the marched field with no bound above 1 in it (lower.h). A union takes the least
+// for what is nearest, so all fields have to be about as steep as a distance: a bound below 1 divides
+// all the same, as does the slope that is seen at the surface; and what is scaled by a vector is
+// measured.
 #include "ir/lower/lowering.h"
 
 #include <algorithm>

@@ -30,7 +30,9 @@ TEST_CASE("two texts of one solid give one picture") {
         {"box(1.2)",
          "implicit(p => max(abs(p.x), max(abs(p.y), abs(p.z))) - 0.6, within: everywhere)"},
         {"sphere(1)", "implicit(p => length(p) - 1, within: ball(3))"},
-        {"sphere(1)", "implicit(p => 7 * (length(p) - 1), within: ball(2))", 5 * few},
+        {"sphere(1)", "implicit(p => 7 * (length(p) - 1), within: ball(2))"},
+        {"sphere(1)", "implicit(p => 1000 * (length(p) - 1), within: ball(2))"},
+        {"box([1, 0.5, 0.7]).rotate(20deg)", "box([1, 0.5, 35]).scale([1, 1, 0.02]).rotate(20deg)"},
         {"sphere(1)", "implicit(p => dot(p, p) - 1, within: ball(2))", 2 * few},
         {"sphere(1)", "sphere(0.5).scale(2)"},
         {"torus(1, 0.3)", "implicit(p => length([length(p.xz) - 1, p.y]) - 0.3, within: ball(3))"},
@@ -55,11 +57,23 @@ TEST_CASE("what closes a place is as near as the solid is, not as a field says")
         {"box([1.8, 1.2, 1.4]) - box([0.2, 2, 2]).repeat([0.4, 0, 0], count: [4, 1, 1])",
          "for i in -2..=2 { box([0.2, 1.2, 1.4]).translate(x: 0.4 * i) }"},
         {"box([2, 1, 0.4]).scale([0.5, 1, 3])", "box([1, 1, 1.2])"},
+        {"sphere(0.7)\nbox([0.2, 20, 3]).scale([1, 0.1, 1]).translate(x: -0.85)",
+         "sphere(0.7)\nbox([0.2, 2, 3]).translate(x: -0.85)"},
     };
     for (const auto &[cut, whole] : pairs) {
         INFO(cut);
         CHECK(different(drawn(scene + cut + "\n"), drawn(scene + whole + "\n")) <= few);
     }
+}
+
+TEST_CASE("what stands on a ground has no dots along its foot") {
+    const std::string scene = "plane(Y, -0.5).paint(#c8c0b0)\n"
+                              "camera(at: [1.5, 0.3, 4], look_at: [0.5, -0.2, 0], fov: 35deg)\n";
+    const cpu::Picture stands = drawn(scene + "box(1).rotate(25deg)\n"
+                                              "cylinder(0.4, 1).translate([1.2, 0, 0])\n"),
+                       sunk = drawn(scene + "box([1, 1.2, 1]).rotate(25deg).translate(y: -0.1)\n"
+                                            "cylinder(0.4, 1.2).translate([1.2, -0.1, 0])\n");
+    CHECK(different(stands, sunk) <= 2);
 }
 
 TEST_CASE("what two parts leave of each other has a soft shadow without stripes") {

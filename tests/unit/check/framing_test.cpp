@@ -94,6 +94,15 @@ TEST_CASE("the solid fills what is framed") {
     check_frame("sphere(1).translate([3 * sin(time), 0, 0])", {-4, -1, -1}, {4, 1, 1}, 0.02);
 }
 
+TEST_CASE("a field is framed alike whatever its region is") {
+    for (const char *region :
+         {"ball(2.8)", "ball(3.6)", "aabb([-2.3, -2.3, -2.3], [2.3, 2.3, 2.3])"})
+        check_frame(std::string("implicit(p => { let q = p * p\n"
+                                "dot(q, q) - 5 * (q.x + q.y + q.z) + 11.8 }, within: ") +
+                        region + ")",
+                    {-2.26, -2.26, -2.26}, {2.26, 2.26, 2.26}, 0.01);
+}
+
 TEST_CASE("of many parts the solid fills what is framed") {
     std::string halves, moving;
     for (int i = 0; i < 12; ++i)
