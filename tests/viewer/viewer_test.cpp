@@ -89,7 +89,7 @@ TEST_CASE("a number that was edited before, and a param, leave the driver alone;
     for (const char *r : {"1.2", "1.25", "0.9"})
         CHECK_FALSE(touched_driver(window.reload(scene(r, "0.25"))));
     CHECK_FALSE(touched_driver(window.reload(scene("0.9", "-0.5"))));
-    CHECK(difference(window.picture(), cold) == 0);
+    CHECK(difference(window.picture(), cold, 0, 2.0f / 255) == 0); // the driver folds constants
 }
 
 // A frame may take several draws.
