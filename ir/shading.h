@@ -13,7 +13,8 @@
 //   slack(t)      slack + float_slack*t: the same at t along a ray
 //   pixel         perspective: the width of a pixel at distance 1; orthographic: everywhere
 //   tolerance(t)  perspective:  min(eps, pixel/2)*t + slack
-//                 orthographic: min(eps*focus, pixel/2) + slack
+//                 orthographic: min(eps*extent/usual_extent, pixel/2) + slack: as a perspective
+//                 camera of the usual angle of view that sees as much, however far off this one is
 //   step(t)       arm*tolerance(t) + min(normal_slack*(slack + float_slack*radius), widest*width(t)),
 //                 with the width of a pixel at t: the arm of a gradient's taps, so short that they
 //                 seldom lie on both sides of an edge. What is large and near, as a ball for a ground,
@@ -157,6 +158,16 @@
 //     in the plane of off and v, which an edge is across (where both are one way, in some plane
 //     that holds it). If it is below -thick at none of them, that is a film (or an edge sharper
 //     than an angle between two looks).
+//   BESIDE: a flush tool's hole has a film across it, which hides its rim. Where a film is, or the way
+//     down ended without landing, with n = v/|v| there and |g|/slope below what counts, the solid is
+//     looked for beside it: on circles in the plane across n about where the way passes it (where
+//     l is flatter in it than circle_across, about the foot of the place beside it), of the shares
+//     1/circles … 1 of what counts across l (never more than 1/circle_across of it in the plane), at
+//     circle_looks angles circle_turn apart, and at each of them |g|/slope + film_look*thick
+//     before and behind the plane. The first below -thick is in the solid. Between its circle and
+//     the next smaller one circle_halvings times the one halfway is looked at, at its angle and a
+//     turn to each side, at first circle_turn/2, then circle_narrower of it. The last place in the
+//     solid is what is found.
 //
 // OCCLUSION (thesis, 4.2.1: five samples along the normal)
 //   for i = 1..5, x_i = reach*i/5 (Lighting's, else Frame's), c_i = p + x_i*n, g_i = g(c_i), w_i =
@@ -234,8 +245,9 @@ inline constexpr float nearer = 0.9f;
 inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.075f; // of half the height that is seen at the focus
 inline constexpr float nearly = 0.98f;
-inline constexpr float occlusion_fine = 1.0f / 256; // of the way to a sample, by its weight
-inline constexpr int descent_steps = 8;             // to the surface
+inline constexpr float occlusion_fine = 1.0f / 256;         // of the way to a sample, by its weight
+inline constexpr double usual_extent = 0.41421356237309503; // tan of half the angle of view
+inline constexpr int descent_steps = 8;                     // to the surface
 inline constexpr float descent_apart =
     1.0f / 64; // the square of a sine: two faces that are not one
 inline constexpr int most_slides = 6, occlusion_slides = 1; // along it
@@ -264,10 +276,14 @@ inline constexpr float film_near = 8, film_look = 64; // slack/4
 inline constexpr float film_flat = 1e-6f;       // the square of a sine: two ways that are as one
 inline constexpr int film_looks = 24;           // on a circle,
 inline constexpr float film_turn = 2.87979327f; // so far apart: eleven steps of the circle
-inline constexpr int deep = 2;                  // touches not above 0 that are a solid, one less
-inline constexpr int nearing = 3;               // samples, by which an estimate is hit
-inline constexpr int many_steps = 256;          // red in a picture of steps
-inline constexpr int budget = 65536;            // evaluations a ray, where the scene does not say
+inline constexpr int circles = 4, circle_looks = 8, circle_halvings = 8; // beside a film
+inline constexpr float circle_turn = 0.78539816f;                        // between two looks
+inline constexpr float circle_narrower = 0.7f;
+inline constexpr float circle_across = 0.3f; // sine
+inline constexpr int deep = 2;               // touches not above 0 that are a solid, one less
+inline constexpr int nearing = 3;            // samples, by which an estimate is hit
+inline constexpr int many_steps = 256;       // red in a picture of steps
+inline constexpr int budget = 65536;         // evaluations a ray, where the scene does not say
 inline constexpr float shadow_bias = 4;
 inline constexpr float min_angle = 0.002f; // a hard shadow's edge, soft enough not to flicker
 inline constexpr std::array<float, 3> background{0.35f, 0.45f, 0.6f};

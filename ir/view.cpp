@@ -229,8 +229,9 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
         shading::occlusion_reach * view.extent * (view.orthographic ? 1 : view.focus);
     frame.slack = shading::float_slack * glm::length(view.origin);
     frame.pixel = 2 * view.extent / height;
-    const double sharp =
-        std::min(scene.render.epsilon * (view.orthographic ? view.focus : 1), frame.pixel / 2);
+    const double sharp = std::min(scene.render.epsilon *
+                                      (view.orthographic ? view.extent / shading::usual_extent : 1),
+                                  frame.pixel / 2);
     frame.tolerance_slope = view.orthographic ? 0 : sharp;
     frame.tolerance_base = (view.orthographic ? sharp : 0) + frame.slack;
     frame.far = scene.render.far > 0 ? scene.render.far

@@ -38,6 +38,19 @@ struct Best {
     float first = 0; // how far off the field said it was at first
     int slides = 0;
     bool returned = false; // from beyond the light, along the surface
+    bool none = false;     // no solid is at `at`, where the field has this
+    float slope = 1;
+};
+
+// Circles beside a place without a solid (shading.h, BESIDE), and what is found on them.
+struct Circles {
+    std::size_t of;
+    Vec middle, side, up;       // the last two of length 1
+    Vec behind;                 // how far before or behind the plane they lie
+    float reach;                // the greatest one's radius, across the way
+    bool found = false;         // a place in the solid, on
+    float angle = 0, share = 0; // this circle; on those of
+    float free = 0;             // this share and less there is none
 };
 
 Vec perpendicular(Vec v) {
@@ -60,7 +73,10 @@ class Searches {
                 return ended && !way.waits;
             });
         }
-        if (worker_.stage.frame.films) leave_out_films();
+        if (worker_.stage.frame.films) {
+            leave_out_films();
+            look_beside();
+        }
         std::vector<float> found(best_.size());
         for (std::size_t i = 0; i < best_.size(); ++i) found[i] = best_[i].off;
         return found;
@@ -97,6 +113,7 @@ class Searches {
             if (!(std::min(gain, length(off) - std::fabs(dot(off, n))) > place.fine)) return false;
             if (point && length(off) < shading::near_enough * best.first) return false;
         } else {
+            if (!way.landed && best.off == shading::nowhere) rule_out(way);
             best.share *= 0.25f;
         }
         if (best.slides == (point ? shading::occlusion_slides : shading::most_slides) ||
@@ -175,7 +192,7 @@ class Searches {
                 const bool lower = way.g < shading::film_lower * before_[k++];
                 way.stalls = lower ? 0 : way.stalls + 1;
                 if (way.stalls == shading::film_stalls) {
-                    best_[way.of].off = shading::nowhere; // a least value above 0
+                    rule_out(way); // a least value above 0
                     return true;
                 }
                 return is_done(way);
@@ -210,13 +227,116 @@ class Searches {
             std::erase_if(ways_,
                           [&](const Descent &way) { return !(way.g >= -places_[way.of].thick); });
         }
-        for (const Descent &way : ways_) best_[way.of].off = shading::nowhere;
+        for (const Descent &way : ways_) {
+            best_[way.of].off = shading::nowhere;
+            best_[way.of].none = true, best_[way.of].g = 0;
+        }
+        ways_.clear();
     }
 
+    // No solid is where the way has ended.
+    void rule_out(const Descent &way) {
+        Best &best = best_[way.of];
+        best.off = shading::nowhere;
+        best.none = true, best.at = way.p, best.v = way.v, best.g = way.g;
+        best.slope = std::max(way.slope, shading::min_slope);
+    }
+
+    void look_beside() {
+        circles_.clear();
+        for (std::size_t i = 0; i < places_.size(); ++i)
+            if (best_[i].none) begin_circles(i);
+        for (int look = 0; look < shading::circles * 2 * shading::circle_looks && !circles_.empty();
+             ++look)
+            look_on_circle(look);
+        std::erase_if(circles_, [](const Circles &circles) { return !circles.found; });
+        float turn = 0.5f * shading::circle_turn;
+        for (int i = 0; i < shading::circle_halvings && !circles_.empty(); ++i) {
+            halve(turn);
+            turn *= shading::circle_narrower;
+        }
+        for (const Circles &circles : circles_) {
+            const Near &place = places_[circles.of];
+            const Vec from = on_circle(circles, circles.angle, circles.share) - place.from;
+            const float x = dot(from, place.towards);
+            const bool point = !(place.angle > 0);
+            if (point || (x > place.first && x < place.last + place.fine))
+                best_[circles.of].off =
+                    length(from - x * place.towards) / (point ? 1.0f : place.angle * x);
+        }
+    }
+
+    void begin_circles(std::size_t i) {
+        const Best &best = best_[i];
+        const Near &place = places_[i];
+        const bool point = !(place.angle > 0);
+        const float x = dot(best.at - place.from, place.towards);
+        const float reach = place.limit * (point ? 1.0f : place.angle * x);
+        const float away = std::fabs(best.g) / best.slope;
+        if (!(away < reach && (point || (x > place.first && x < place.last)))) return;
+        if (!(dot(best.v, best.v) > 0)) return;
+        const Vec n = glm::normalize(best.v), beside = place.from + x * place.towards;
+        const float across = dot(place.towards, n), off = dot(best.at - beside, n);
+        const Vec to = std::fabs(across) > shading::circle_across ? place.towards / across : n;
+        const Vec side = glm::normalize(perpendicular(n));
+        circles_.push_back({i, beside + off * to, side, glm::cross(n, side),
+                            (away + shading::film_look * place.thick) * n, reach});
+    }
+
+    Vec on_circle(const Circles &circles, float angle, float share) const {
+        const Vec out = std::cos(angle) * circles.side + std::sin(angle) * circles.up;
+        const Vec l = places_[circles.of].towards;
+        const float across = std::max(length(out - dot(out, l) * l), shading::circle_across);
+        return circles.middle + circles.behind + share * circles.reach / across * out;
+    }
+
+    // From the least circle on; at each angle before and behind.
+    void look_on_circle(int look) {
+        const float share = static_cast<float>(1 + look / (2 * shading::circle_looks)) /
+                            static_cast<float>(shading::circles);
+        const float angle =
+            shading::circle_turn * static_cast<float>(look % (2 * shading::circle_looks) / 2);
+        evaluate(circles_.size(), [&](std::size_t k) {
+            if (!circles_[k].found) circles_[k].behind = -circles_[k].behind;
+            return on_circle(circles_[k], angle, share);
+        });
+        for (std::size_t k = 0; k < circles_.size(); ++k) {
+            Circles &circles = circles_[k];
+            if (circles.found || !(worker_.values[k] < -places_[circles.of].thick)) continue;
+            circles.found = true, circles.angle = angle;
+            circles.share = share, circles.free = share - 1.0f / shading::circles;
+        }
+    }
+
+    // The circle between the one with a place in the solid and the next, at the place and beside it.
+    void halve(float turn) {
+        nearer_.assign(circles_.size(), nearer_no);
+        for (const float by : {0.0f, turn, -turn}) {
+            evaluate(circles_.size(), [&](std::size_t k) {
+                const Circles &circles = circles_[k];
+                return on_circle(circles, circles.angle + by,
+                                 0.5f * (circles.free + circles.share));
+            });
+            for (std::size_t k = 0; k < circles_.size(); ++k)
+                if (nearer_[k] == nearer_no && worker_.values[k] < -places_[circles_[k].of].thick)
+                    nearer_[k] = by;
+        }
+        for (std::size_t k = 0; k < circles_.size(); ++k) {
+            Circles &circles = circles_[k];
+            const bool nearer = nearer_[k] != nearer_no;
+            (nearer ? circles.share : circles.free) = 0.5f * (circles.free + circles.share);
+            if (nearer) circles.angle += nearer_[k];
+        }
+    }
+
+    // The field at at(k) for each k below n, into worker_.values.
+    template <class At> void evaluate(std::size_t n, At at) {
+        for (std::size_t k = 0; k < n; ++k) worker_.points.set(0, k, at(k));
+        shaded_values(worker_, worker_.points, worker_.values.data(), n);
+    }
     // The values where the ways are.
     void evaluate() {
-        for (std::size_t k = 0; k < ways_.size(); ++k) worker_.points.set(0, k, ways_[k].p);
-        shaded_values(worker_, worker_.points, worker_.values.data(), ways_.size());
+        evaluate(ways_.size(), [&](std::size_t k) { return ways_[k].p; });
         for (std::size_t k = 0; k < ways_.size(); ++k) ways_[k].g = worker_.values[k];
     }
 
@@ -224,8 +344,11 @@ class Searches {
     const std::vector<Near> &places_;
     std::vector<Best> best_; // of each place
     std::vector<Descent> ways_;
-    bool searches_ = true;           // for the surface, and not beyond what is found
-    std::vector<std::size_t> below_; // those that step down
+    std::vector<Circles> circles_;
+    static constexpr float nearer_no = 10; // no turn
+    std::vector<float> nearer_;            // by what turn the solid is there
+    bool searches_ = true;                 // for the surface, and not beyond what is found
+    std::vector<std::size_t> below_;       // those that step down
     std::vector<Vec> points_, gradients_;
     std::vector<float> g_, arms_, slopes_, before_;
 };

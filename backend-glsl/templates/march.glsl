@@ -56,7 +56,7 @@ void fathom_lengths() {
     fathom_pixel = 2.0 * fathom_extent / fathom_resolution.y;
     fathom_far = $FAR;
     bool parallel = fathom_orthographic != 0;
-    fathom_tolerance_base = (parallel ? min($EPSILON * fathom_focus, 0.5 * fathom_pixel) : 0.0) + fathom_slack;
+    fathom_tolerance_base = (parallel ? min($EPSILON * fathom_extent / $USUAL_EXTENT, 0.5 * fathom_pixel) : 0.0) + fathom_slack;
     fathom_tolerance_slope = parallel ? 0.0 : min($EPSILON, 0.5 * fathom_pixel);
 }
 

@@ -25,8 +25,13 @@ $if FILMS
     vec3 best_v = v, best_way = v;
     float best_g = g, before = g;
     int stalls = 0, look = -1; // of the circle round it
+    bool none = false; // no solid is there: what is beside it? It is so far from 0:
+    float away_there = 0.0, fine_found = fine;
+    int beside = -1; // look on the circles
+    vec3 middle = v, side_x = v, side_y = v, behind = v;
+    float across = 0.0, angle_in = 0.0, beside_turn = 0.5 * $CIRCLE_TURN, share_in = 1.0, share_out = 0.0;
 $end
-    for (int i = $ZERO; i < ($MOST_SLIDES + 2) * (5 * $DESCENT_STEPS + 1) + 5 * $FILM_STEPS + $FILM_LOOKS; ++i) {
+    for (int i = $ZERO; i < ($MOST_SLIDES + 2) * (5 * $DESCENT_STEPS + 1) + 5 * $FILM_STEPS + $FILM_LOOKS + $CIRCLES_LOOKS + 3 * $CIRCLE_HALVINGS; ++i) {
         ++looks;
 $if AROUND
         fathom_exact = true;
@@ -68,16 +73,36 @@ $end
             if (!landed) continue;
         }
 $if FILMS
-        if (look >= 0) {
+        if (beside >= 0) {
+            bool inside = f < -thick, halving = beside >= $CIRCLES_LOOKS;
+            if (halving) {
+                int third = (beside - $CIRCLES_LOOKS) % 3;
+                float share = 0.5 * (share_out + share_in);
+                if (inside) share_in = share;
+                if (inside) angle_in += third == 0 ? 0.0 : third == 1 ? beside_turn : -beside_turn;
+                if (!inside && third == 2) share_out = share;
+                if (inside || third == 2) beside_turn *= $CIRCLE_NARROWER;
+                beside += inside ? 3 - third : 1;
+            }
+            if (!halving && inside) beside = $CIRCLES_LOOKS;
+            if (!halving && inside) share_out = share_in - 1.0 / float($CIRCLES);
+            if (!halving && !inside) ++beside;
+            if (!halving && !inside && beside == $CIRCLES_LOOKS) return $UNSEEN;
+        }
+        if (look >= 0 && !none) {
             if (!(f >= -thick)) return least;
             ++look;
-            if (look == $FILM_LOOKS) return $UNSEEN;
+            none = look == $FILM_LOOKS;
+            if (none) best = p;
         }
-        if (look < 0 && !landed) g = f;
-        if (look < 0 && found) {
+        if (look < 0 && !none && !landed) g = f;
+        if (look < 0 && !none && found) {
             ++stalls;
             if (g < $FILM_LOWER * before) stalls = 0;
-            if (stalls == $FILM_STALLS) return $UNSEEN; // a least value above 0
+            none = stalls == $FILM_STALLS; // a least value above 0
+            if (none) best = p;
+            if (none) best_v = v;
+            if (none) away_there = abs(g) / max(slope, $MIN_SLOPE);
         }
 $else
         if (!landed) g = f;
@@ -85,7 +110,11 @@ $end
 $if UNIT_SLOPE
         landed = abs(g) < fine * slope;
 $end
+$if FILMS
+        if (!found && !none && (landed || steps >= $DESCENT_STEPS)) {
+$else
         if (!found && (landed || steps >= $DESCENT_STEPS)) {
+$end
             float x = dot(p - from, l);
             vec3 off = p - from - x * l;
             if (landed && !point && x > last && !returned) { // beyond the light: back along the surface
@@ -121,26 +150,31 @@ $end
                 ++slides;
                 continue;
             }
-            if (!(least < limit)) return $UNSEEN;
 $if FILMS
+            none = !landed && !(least < $UNSEEN);
+            if (none) best = p;
+            if (none) best_v = v;
+            if (none) away_there = abs(g) / max(slope, $MIN_SLOPE);
+            if (!none && !(least < limit)) return $UNSEEN;
             found = true;
             p = best;
             g = best_g;
+            fine_found = fine;
             fine = $FILM_NEAR * thick;
             steps = 0;
             slope = 0.0;
 $else
-            return least;
+            return least < limit ? least : $UNSEEN;
 $end
         }
 $if FILMS
-        if (found && look < 0) {
+        if (found && !none && look < 0) {
             if (!(g > -fine)) return least;
             if (g < fine) look = 0;
             if (look < 0 && steps >= $FILM_STEPS) return least;
             before = g;
         }
-        if (look >= 0) {
+        if (look >= 0 && !none) {
             vec3 edge = cross(best_v, best_way);
             if (!(dot(edge, edge) > $FILM_FLAT * dot(best_v, best_v) * dot(best_way, best_way)))
                 edge = fathom_perpendicular(best_v);
@@ -148,6 +182,41 @@ $if FILMS
             vec3 side = normalize(fathom_perpendicular(edge));
             float turn = $FILM_TURN * float(look);
             around = $FILM_LOOK * thick * (cos(turn) * side + sin(turn) * cross(edge, side));
+            continue;
+        }
+        if (none) {
+            if (beside < 0) {
+                float x = dot(best - from, l);
+                across = limit * (point ? 1.0 : angle * x);
+                if (!(away_there < across && (point || x > first && x < last) && dot(best_v, best_v) > 0.0)) return $UNSEEN;
+                vec3 n = normalize(best_v);
+                middle = from + x * l;
+                float steep = dot(l, n);
+                middle += dot(best - middle, n) * (abs(steep) > $CIRCLE_ACROSS ? l / steep : n);
+                side_x = normalize(fathom_perpendicular(n));
+                side_y = cross(n, side_x);
+                behind = (away_there + $FILM_LOOK * thick) * n;
+                beside = 0;
+            }
+            bool ended = beside == $CIRCLES_LOOKS + 3 * $CIRCLE_HALVINGS;
+            int third = (beside - $CIRCLES_LOOKS) % 3;
+            float share = ended ? share_in : 0.5 * (share_out + share_in), there = angle_in;
+            if (!ended && beside > $CIRCLES_LOOKS) there += third == 0 ? 0.0 : third == 1 ? beside_turn : -beside_turn;
+            if (beside < $CIRCLES_LOOKS) {
+                share_in = float(1 + beside / (2 * $CIRCLE_LOOKS)) / float($CIRCLES);
+                share = share_in;
+                angle_in = $CIRCLE_TURN * float(beside % (2 * $CIRCLE_LOOKS) / 2);
+                there = angle_in;
+                behind = -behind;
+            }
+            vec3 way = cos(there) * side_x + sin(there) * side_y;
+            p = middle + behind + share * across / max(length(way - dot(way, l) * l), $CIRCLE_ACROSS) * way;
+            around = vec3(0.0);
+            if (ended) {
+                float x = dot(p - from, l);
+                if (!point && !(x > first && x < last + fine_found)) return $UNSEEN;
+                return length(p - from - x * l) / (point ? 1.0 : angle * x);
+            }
             continue;
         }
 $end

@@ -103,6 +103,42 @@ TEST_CASE("the soft shadow of a sharp edge is as that of a blunt one") {
     CHECK(different(lens, blunt) <= 5 * few);
 }
 
+TEST_CASE("the light in a hole does not depend on how far the tool reaches beyond it") {
+    const std::string scene = "camera(at: [2.2, 2.2, 2.6], look_at: [0, -0.7, 0], fov: 50deg)\n"
+                              "sun(direction: [-0.3, 1, 0.3])\nplane(Y, -1)\n"
+                              "lighting(soft_shadows: 0.1)\n";
+    struct Cut {
+        std::string one, other; // all of it, but for how far it reaches
+        std::string through;    // well beyond
+    };
+    const Cut cuts[] = {
+        {"box([1.6, 0.1, 1.6]) - cylinder(0.4, ", ")", "3"},
+        {"cylinder(0.4, 0.8) - cylinder(0.33, ", ")", "3"},
+        {"box([1.6, 0.1, 1.6]) - box([0.8, 0.3, ", "]).rotate(90deg, axis: X)", "3"},
+    };
+    for (const Cut &cut : cuts) {
+        const bool tube = cut.one[0] == 'c';
+        const cpu::Picture whole = drawn(scene + cut.one + cut.through + cut.other + "\n");
+        for (const char *reach : {"0", "0.0002", "0.002", "0.02", "0.04", "0.1"}) {
+            const std::string length = (tube ? "(0.8 + " : "(0.1 + ") + std::string(reach) + ")";
+            INFO(cut.one << length << cut.other);
+            CHECK(different(whole, drawn(scene + cut.one + length + cut.other + "\n")) <= few);
+        }
+    }
+}
+
+TEST_CASE("an orthographic camera may stand as far back as one likes") {
+    const auto from = [](const char *at, const char *fov) {
+        return drawn(
+            "sphere(0.5)\nplane(Y, -1)\nsun(direction: [-0.3, 1, 0.3])\n"
+            "lighting(soft_shadows: 0.1)\ncamera(look_at: [0, -0.5, 0], orthographic: true, at: " +
+            std::string(at) + ", fov: " + fov + ")\n");
+    };
+    // tan(fov / 2) times the distance is the same
+    CHECK(different(from("[3, 1.7, 4]", "2 * atan(0.36)"),
+                    from("[30, 21.5, 40]", "2 * atan(0.036)")) <= few);
+}
+
 // But for the edge of the floor, each byte is near the mean of those above and below it.
 TEST_CASE("a lamp beside a wall lights the floor without rings") {
     const cpu::Picture lit = drawn("box([6.2, 4.2, 6.2]) - box([6, 4, 6])\n"

@@ -28,16 +28,17 @@ const std::vector<std::string> flags{
 
 // What a flag decides beside its own `$if`, as the emitter has it.
 void add_counts(Values &values) {
-    for (const char *count : {"LIGHTS",        "MAX_STEPS",   "ALL_TAPS",    "SURFACE_TAPS",
-                              "REFINEMENTS",   "DEEP",        "NEARING",     "MANY_STEPS",
-                              "DESCENT_STEPS", "MOST_SLIDES", "CHECK_STEPS", "AGES",
-                              "ROWS",          "COUNT",       "WISHES",      "SAMPLED",
-                              "HIGHEST",       "HIGH_BITS",   "HIGH_MASK",   "PLACE_BITS",
-                              "FILM_STEPS",    "FILM_LOOKS",  "FILM_STALLS", "OCCLUSION_SLIDES",
-                              "HEAD",          "TAIL",        "LIMIT",       "INSERTED",
-                              "EVICTED",       "DELETED",     "CROWDED",     "FULL",
-                              "SWEPT",         "CHANGED",     "PAID",        "WASTED",
-                              "LEFT",          "STEPS",       "MANY",        "REFUSED",
+    for (const char *count : {"LIGHTS",        "MAX_STEPS",    "ALL_TAPS",      "SURFACE_TAPS",
+                              "REFINEMENTS",   "DEEP",         "NEARING",       "MANY_STEPS",
+                              "DESCENT_STEPS", "MOST_SLIDES",  "CHECK_STEPS",   "AGES",
+                              "ROWS",          "COUNT",        "WISHES",        "SAMPLED",
+                              "HIGHEST",       "HIGH_BITS",    "HIGH_MASK",     "PLACE_BITS",
+                              "FILM_STEPS",    "FILM_LOOKS",   "FILM_STALLS",   "OCCLUSION_SLIDES",
+                              "CIRCLES",       "CIRCLE_LOOKS", "CIRCLES_LOOKS", "CIRCLE_HALVINGS",
+                              "HEAD",          "TAIL",         "LIMIT",         "INSERTED",
+                              "EVICTED",       "DELETED",      "CROWDED",       "FULL",
+                              "SWEPT",         "CHANGED",      "PAID",          "WASTED",
+                              "LEFT",          "STEPS",        "MANY",          "REFUSED",
                               "STRIDE",        "LAST"})
         values.emplace(count, "2");
 }
@@ -98,6 +99,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
         values.emplace(vector, "vec3(1.0)");
     for (const char *number : {"FAR",
                                "EPSILON",
+                               "USUAL_EXTENT",
                                "FLOAT_SLACK",
                                "NORMAL_SLACK",
                                "MIN_SLOPE",
@@ -123,6 +125,9 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "NEAR_ENOUGH",
                                "DESCENT_APART",
                                "FILM_LOWER",
+                               "CIRCLE_TURN",
+                               "CIRCLE_NARROWER",
+                               "CIRCLE_ACROSS",
                                "OCCLUSION_FINE",
                                "BEHIND",
                                "LIFT",
