@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace fathom::cpu {
 
@@ -242,6 +243,7 @@ class Searches {
         best.slope = std::max(way.slope, shading::min_slope);
     }
 
+    // shading.h, BESIDE.
     void look_beside() {
         circles_.clear();
         for (std::size_t i = 0; i < places_.size(); ++i)
@@ -310,7 +312,7 @@ class Searches {
 
     // The circle between the one with a place in the solid and the next, at the place and beside it.
     void halve(float turn) {
-        nearer_.assign(circles_.size(), nearer_no);
+        turned_.assign(circles_.size(), {});
         for (const float by : {0.0f, turn, -turn}) {
             evaluate(circles_.size(), [&](std::size_t k) {
                 const Circles &circles = circles_[k];
@@ -318,14 +320,13 @@ class Searches {
                                  0.5f * (circles.free + circles.share));
             });
             for (std::size_t k = 0; k < circles_.size(); ++k)
-                if (nearer_[k] == nearer_no && worker_.values[k] < -places_[circles_[k].of].thick)
-                    nearer_[k] = by;
+                if (!turned_[k] && worker_.values[k] < -places_[circles_[k].of].thick)
+                    turned_[k] = by;
         }
         for (std::size_t k = 0; k < circles_.size(); ++k) {
             Circles &circles = circles_[k];
-            const bool nearer = nearer_[k] != nearer_no;
-            (nearer ? circles.share : circles.free) = 0.5f * (circles.free + circles.share);
-            if (nearer) circles.angle += nearer_[k];
+            (turned_[k] ? circles.share : circles.free) = 0.5f * (circles.free + circles.share);
+            circles.angle += turned_[k].value_or(0);
         }
     }
 
@@ -345,10 +346,9 @@ class Searches {
     std::vector<Best> best_; // of each place
     std::vector<Descent> ways_;
     std::vector<Circles> circles_;
-    static constexpr float nearer_no = 10; // no turn
-    std::vector<float> nearer_;            // by what turn the solid is there
-    bool searches_ = true;                 // for the surface, and not beyond what is found
-    std::vector<std::size_t> below_;       // those that step down
+    std::vector<std::optional<float>> turned_; // by what angle the solid is nearer
+    bool searches_ = true;                     // for the surface, and not beyond what is found
+    std::vector<std::size_t> below_;           // those that step down
     std::vector<Vec> points_, gradients_;
     std::vector<float> g_, arms_, slopes_, before_;
 };
