@@ -29,11 +29,12 @@ constexpr ir::OpSet placing{Op::Add,       Op::Sub,    Op::Mul,         Op::Div,
                             Op::MakeHit,   Op::Select, Op::HitDistance, Op::HitWith,
                             Op::FillPaint, Op::Var,    Op::LoopResult};
 
+// As graphics cards have it: what is below the least normal number is 0.
 Constant rounded(Constant x) {
     if (x.type != ir::Type::Int && x.type != ir::Type::Bool)
         for (int c = 0; c < ir::components(x.type); ++c) {
             double &v = x.value[static_cast<std::size_t>(c)];
-            v = to_single(v);
+            v = flushed(to_single(v));
         }
     return x;
 }
@@ -211,7 +212,7 @@ void Trials::run_step(Plan &plan, const Plan::Step &step) {
     }
     args_.clear();
     for (std::size_t i = 0; i < step.args.size(); ++i) args_.push_back(arg(i).computed);
-    r.computed = *ir::evaluate_single(node.op, node.type, args_, node.payload);
+    r.computed = rounded(*ir::evaluate_single(node.op, node.type, args_, node.payload));
     const bool decides = deciding[node.op];
     if (decides) r.varies = std::min(r.varies, Varies::Steps);
     if (decides || r.varies == Varies::Never || (r.varies == Varies::Steps && !placing[node.op])) {

@@ -165,6 +165,19 @@ TEST_CASE("families of fields that lose digits are seen") {
     CHECK(verdict("implicit(p => 0.3 * (exp(1e-6 * p.x) - 1) * 1e6 + p.y, within: ball(1))") ==
           Coarse);
     CHECK(verdict("implicit(p => length(1e20 * p) / 1e20 - 0.5, within: ball(1))") == Refused);
+    // Powers that processors have as subnormal numbers and graphics cards as 0.
+    for (const std::string root : {"sqrt(sqrt(sqrt(sqrt(s))))", "pow(s, 1 / 16)"})
+        for (const std::string power : {"pow(x, 16)", "pow(x, 8) * pow(x, 8)"}) {
+            const auto field = [&](const std::string &radius) {
+                return "fn power(x: float) -> float = " + power +
+                       "\nfn f(p: vec3) -> float {\n"
+                       "  let s = power(p.x) + power(p.y) + power(p.z)\n  " +
+                       root + " - " + radius + "\n}\nimplicit(f, within: ball(0.1))";
+            };
+            INFO(field("0.003"));
+            CHECK(verdict(field("0.003")) != Fine);
+            CHECK(verdict(field("0.03")) == Fine);
+        }
     CHECK(verdict("implicit(p => length(1e-25 * p) * 1e25 - 0.5, within: ball(1))") == Refused);
 }
 
