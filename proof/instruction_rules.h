@@ -78,6 +78,7 @@ struct Step {
     void odd_power();
     void wave();
     void sinc();
+    void hyperbolic();
     void held_wave();
     void absolute();
     void angle();

@@ -11,6 +11,29 @@ using ir::rounding::infinity;
 using ir::rounding::times;
 using ir::rounding::up;
 
+namespace {
+
+// x/tanh(x) = 1 + x^2/3 - x^4/45 + ... is convex, is at least |x|, and rises with |x|; its slope,
+// 2x/3 - 4x^3/45 + ..., rises with x, and is in -1..1.
+constexpr double series_end = 0.1, flat_end = 40; // the slope is 1 from there on
+
+Interval hyperbolic_at(double x) { // x >= 0
+    if (x < series_end) return {1, 1 + x * x / 3 * (1 + 1e-12)};
+    return {x / std::tanh(x) * (1 - 1e-12), x / std::tanh(x) * (1 + 1e-12)};
+}
+Interval hyperbolic_slope_at(double x) {
+    const double a = std::fabs(x);
+    Interval slope{1 - 1e-10, 1};
+    if (a < series_end) {
+        slope = {a * (2.0 / 3) * (1 - 1e-12) - a * a * a * (4.0 / 45), a * (2.0 / 3) * (1 + 1e-12)};
+    } else if (a < flat_end) {
+        const double c = 1 / std::tanh(a), at = c - a * (c * c - 1);
+        slope = {at - 1e-10, std::min(at + 1e-10, 1.0)};
+    }
+    return x < 0 ? -slope : slope;
+}
+} // namespace
+
 void Step::negate() {
     for (int c = 0; c < n; ++c) set(c, -value(0, c), scaled(-1.0, grad(0, c)), odd(0, c));
     finish(norm(0), false);
@@ -276,6 +299,17 @@ void Step::sinc() {
             Interval all(-0.4362, 0.4362);
             if (x.mignitude() < 0.5) return all;
             return meet(all, (cos(x) - sin(x) / x) / x);
+        });
+}
+
+// |(x/tanh(x))'| <= 1, values from 1 on
+void Step::hyperbolic() {
+    unary(
+        [](Interval x) {
+            return Interval(hyperbolic_at(x.mignitude()).lo, hyperbolic_at(x.magnitude()).hi);
+        },
+        [](Interval x) {
+            return Interval(hyperbolic_slope_at(x.lo).lo, hyperbolic_slope_at(x.hi).hi);
         });
 }
 

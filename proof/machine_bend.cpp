@@ -97,6 +97,7 @@ double Step::bend() const {
     case Form::Norm: return length();
     case Form::Wave:
     case Form::Sinc:
+    case Form::Hyperbolic:
     case Form::Corner:
     case Form::OddPower:
     case Form::Smooth:

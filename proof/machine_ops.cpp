@@ -189,6 +189,7 @@ void Step::run() {
     switch (in.form) {
     case Form::Wave: return wave();
     case Form::Sinc: return sinc();
+    case Form::Hyperbolic: return hyperbolic();
     case Form::Norm: return length();
     case Form::Corner: return corner();
     case Form::Square: return squared();

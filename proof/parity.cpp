@@ -37,7 +37,8 @@ struct Follower {
     Parity component(const Instruction &in, std::uint32_t c) {
         const auto arg = [&](std::size_t i) { return of(in.args[i], c); };
         if (in.form == Form::Norm || in.form == Form::PNorm) return all(in, square);
-        if (in.form == Form::Square || in.form == Form::Sinc) return square(arg(0));
+        if (in.form == Form::Square || in.form == Form::Sinc || in.form == Form::Hyperbolic)
+            return square(arg(0));
         const Parity even = all(in, plain) == Parity::Even ? Parity::Even : Parity::Neither;
         if (in.form == Form::Wave) return of(in.args[1], c) == Parity::Even ? arg(0) : even;
         if (in.form != Form::Plain) return even;

@@ -24,9 +24,10 @@ enum class Form : std::uint8_t {
     Plain,
     Wave, // x - m*round(x/m): jumps, but only from m/2 to -m/2, which an even function does not see
     Sinc, // sin(x)/x, 1 at 0
-    Norm, // the length of all arguments' components together
-    Corner,   // |max(v, 0)| + min(greatest of v, 0): the distance to a corner, 1-Lipschitz in v
-    Square,   // x*x, never negative
+    Hyperbolic, // x/tanh(x), 1 at 0
+    Norm,       // the length of all arguments' components together
+    Corner,     // |max(v, 0)| + min(greatest of v, 0): the distance to a corner, 1-Lipschitz in v
+    Square,     // x*x, never negative
     OddPower, // x*|x|^c, c > 0, whose slope (c + 1)*|x|^c is finite at 0 where that of |x|^c is not
     Smooth,   // smooth_extremum: of x, y, k; payload: 1 greater + 2 divides + 4 clipped
     LogSum,   // log(exp(a) + exp(b)); the op says of which base

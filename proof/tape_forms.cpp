@@ -409,6 +409,8 @@ Slot Flattener::product(Scope &scope, NodeId id, Instruction out) {
 Slot Flattener::quotient(Scope &scope, NodeId id, Instruction out) {
     const NodeId a = graph.arg(id, 0), b = graph.arg(id, 1);
     if (graph[a].op == Op::Sin && graph.arg(a, 0) == b) return emit(scope, out, Form::Sinc, {b});
+    if (graph[b].op == Op::Tanh && graph.arg(b, 0) == a)
+        return emit(scope, out, Form::Hyperbolic, {a});
     if (graph[b].op == Op::Splat && graph[graph.arg(b, 0)].op == Op::Length &&
         graph.arg(graph.arg(b, 0), 0) == a) {
         out.op = Op::Normalize;

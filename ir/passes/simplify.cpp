@@ -4,6 +4,8 @@
 // Long: one function an identity, and the table that names them.
 #include "ir/passes/simplify.h"
 
+#include "ir/passes/exponential_ratios.h"
+
 #include <cassert>
 #include <cmath>
 #include <optional>
@@ -294,6 +296,7 @@ NodeId simple_div(const Made &n) {
     if (n.is(1, 1)) return n.args[0];
     if (n.op_of(0) == Op::Sin && n.inside(0) == n.args[1]) return sine_ratio(n.graph, n.args[1]);
     if (const NodeId ratio = scaled_sine_ratio(n.graph, n.args[0], n.args[1])) return ratio;
+    if (const NodeId ratio = exponential_ratio(n.graph, n.args[0], n.args[1])) return ratio;
     if (n.is(1, -1)) return n.make(Op::Neg, {n.args[0]});
     if (n.whole() || !n.graph.is_constant(n.args[1]) || n.graph.is_constant(n.args[0])) return {};
     // By a power of two exactly, else division stays: it rounds once.
