@@ -3,6 +3,7 @@
 #include "ir/passes/walk.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_set>
 #include <vector>
 
@@ -49,7 +50,51 @@ int edged_argument(Op op) {
     return op == Op::Div ? 1 : of_first[op] ? 0 : -1;
 }
 
+// A number with its bounds in its place, wherever it stands in an expression.
+NodeId with_bounds(Graph &graph, NodeId root, const std::vector<Order> &orders) {
+    constexpr std::size_t most_below = 48;
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> below;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!below.insert(id).second) continue;
+        if (below.size() > most_below) return root;
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    ir::Substitution kept;
+    for (const Order &order : orders) {
+        if (!below.contains(order.number)) continue;
+        const auto known = kept.find(order.number);
+        kept[order.number] =
+            graph.make(order.at_least ? Op::Max : Op::Min,
+                       {known == kept.end() ? order.number : known->second, order.limit});
+    }
+    return kept.empty() ? root : ir::substitute(graph, root, kept);
+}
+
 } // namespace
+
+bool is_never_negative(const Graph &graph, NodeId id, int depth) {
+    constexpr ir::OpSet sizes{Op::Length, Op::Abs, Op::Exp, Op::Exp2, Op::Sqrt},
+        by_all{Op::Add, Op::Min, Op::Select, Op::Div, Op::Mul, Op::Splat};
+    const ir::Node node = graph[id];
+    if (const auto number = graph.as_number(id)) return *number >= 0;
+    if (sizes[node.op]) return true;
+    if ((node.op == Op::Mul || node.op == Op::Dot) && graph.arg(id, 0) == graph.arg(id, 1))
+        return true;
+    if (node.op == Op::Pow) { // 0 below 0 where the exponent is not whole
+        const auto exponent = graph.as_number(graph.arg(id, 1));
+        if (exponent && std::fmod(*exponent, 2) != 1 && std::fmod(*exponent, 2) != -1) return true;
+        return depth > 0 && is_never_negative(graph, graph.arg(id, 0), depth - 1);
+    }
+    if (depth == 0 || (!by_all[node.op] && node.op != Op::Max)) return false;
+    const int first = node.op == Op::Select ? 1 : 0;
+    for (int i = first; i < int(node.count); ++i)
+        if (is_never_negative(graph, graph.arg(id, i), depth - 1) == (node.op == Op::Max))
+            return node.op == Op::Max;
+    return node.op != Op::Max;
+}
 
 NodeId on_its_side(Graph &graph, NodeId condition, bool holds, NodeId arm) {
     const std::vector<Order> orders = orders_of(graph, condition, holds);
@@ -74,6 +119,10 @@ NodeId on_its_side(Graph &graph, NodeId condition, bool holds, NodeId arm) {
         for (const Order &order : orders)
             if (order.number == before)
                 number = graph.make(order.at_least ? Op::Max : Op::Min, {number, order.limit});
+        // Forms that such a root is part of would not be seen with other numbers in it.
+        if (number == before && graph[number].type == ir::Type::Float &&
+            !is_never_negative(graph, number))
+            number = with_bounds(graph, number, orders);
         if (number == before) continue;
         at = splat ? graph.make(Op::Splat, graph[at].type, {number}) : number;
         kept[id] = graph.make(node.op, node.type, args, node.payload);

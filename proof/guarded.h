@@ -11,4 +11,7 @@ namespace fathom::proof {
 // it is taken, and has no pole anywhere else (docs/lipschitz.md, 2).
 ir::NodeId on_its_side(ir::Graph &graph, ir::NodeId condition, bool holds, ir::NodeId arm);
 
+// Whether it is never below 0, whatever its arguments are: sizes, squares, and what is made of such.
+bool is_never_negative(const ir::Graph &graph, ir::NodeId id, int depth = 8);
+
 } // namespace fathom::proof

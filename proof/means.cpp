@@ -16,7 +16,7 @@ namespace {
 
 using ir::Graph;
 
-constexpr std::size_t max_nodes_of_mean = 96, max_pairs = 6, max_instructions = 20'000,
+constexpr std::size_t max_nodes_of_mean = 96, max_pairs = 8, max_instructions = 20'000,
                       max_parts_of_mean = 32;
 constexpr double max_steepness = 1.3; // 1 + 2e
 // Sizes of both numbers; within the lesser ones exponentials of them are in single precision.
@@ -31,55 +31,127 @@ struct MovedPair {
     friend bool operator==(const MovedPair &, const MovedPair &) = default;
 };
 
+// A number times a power of one that is the same for all points.
+struct Rate {
+    double by = 0;
+    NodeId held{}; // none where it is a number alone
+    int power = 0;
+    friend bool operator==(const Rate &, const Rate &) = default;
+};
+Rate rate(double by, NodeId held = {}, int power = 0) {
+    return by == 0 || power == 0 ? Rate{by, {}, 0} : Rate{by, held, power};
+}
+
 // How far a node moves where a moves by 1 and b by `other`, whatever a and b are; nothing where that
-// is not one number.
+// is not one number, or one over or times what does not vary.
 class Moves {
   public:
     Moves(const Graph &graph, const MovedPair &moved) : graph_(graph) {
-        known_[moved.a] = 1;
-        known_[moved.b] = moved.other;
+        known_[moved.a] = rate(1);
+        known_[moved.b] = rate(moved.other);
     }
     std::optional<double> of(NodeId id) {
+        const auto found = rate_of(id);
+        return found && found->power == 0 ? std::optional(found->by) : std::nullopt;
+    }
+
+  private:
+    using Found = std::optional<Rate>;
+
+    Found rate_of(NodeId id) {
         if (const auto it = known_.find(id); it != known_.end()) return it->second;
         if (known_.size() > max_nodes_of_mean) return {};
         const auto found = found_of(id);
         known_[id] = found;
         return found;
     }
-
-  private:
-    std::optional<double> found_of(NodeId id) {
+    static Found sum(const Rate &x, const Rate &y, double sign) {
+        if (x.by == 0) return rate(sign * y.by, y.held, y.power);
+        if (y.by == 0) return x;
+        if (x.held != y.held || x.power != y.power) return {};
+        return rate(x.by + sign * y.by, x.held, x.power);
+    }
+    // x times what does not vary, or over it.
+    Found times(const Rate &x, NodeId factor, int power) const {
+        if (graph_.reads(factor).point || graph_.reads(factor).free_vars) return {};
+        double by = 1;
+        while (true) { // a number times what is left
+            const ir::Node node = graph_[factor];
+            const auto number = [&](int i) { return graph_.as_number(graph_.arg(factor, i)); };
+            if (node.op == Op::Neg)
+                by = -by, factor = graph_.arg(factor, 0);
+            else if (node.op == Op::Mul && number(0))
+                by *= *number(0), factor = graph_.arg(factor, 1);
+            else if (node.op == Op::Mul && number(1))
+                by *= *number(1), factor = graph_.arg(factor, 0);
+            else if (node.op == Op::Div && number(1).value_or(0) != 0)
+                by /= *number(1), factor = graph_.arg(factor, 0);
+            else
+                break;
+        }
+        if (const auto number = graph_.as_number(factor)) {
+            by *= *number;
+            if (power < 0 && by == 0) return {};
+            return rate(x.by * (power < 0 ? 1 / by : by), x.held, x.power);
+        }
+        if (power < 0 && by == 0) return {};
+        if (x.by == 0 || (x.power != 0 && x.held != factor))
+            return x.by == 0 ? Found(x) : std::nullopt;
+        return rate(x.by * (power < 0 ? 1 / by : by), factor, x.power + power);
+    }
+    Found found_of(NodeId id) {
         const ir::Graph::Reads reads = graph_.reads(id);
         if (graph_[id].op == Op::Var || reads.normal || reads.direction) return {};
-        if (!reads.point && !reads.free_vars) return 0;
-        std::vector<double> args;
+        if (!reads.point && !reads.free_vars) return rate(0);
+        std::vector<Rate> args;
         for (NodeId arg : graph_.args(id)) {
-            const auto one = of(arg);
+            const auto one = rate_of(arg);
             if (!one) return {};
             args.push_back(*one);
         }
         const Op op = graph_[id].op;
-        const auto number = [&](int i) { return graph_.as_number(graph_.arg(id, i)); };
-        if (op == Op::Neg) return -args[0];
-        if (op == Op::Add) return args[0] + args[1];
-        if (op == Op::Sub) return args[0] - args[1];
-        if (op == Op::Mul && number(0)) return *number(0) * args[1];
-        if (op == Op::Mul && number(1)) return *number(1) * args[0];
-        if (op == Op::Div && number(1).value_or(0) != 0) return args[0] / *number(1);
+        const bool still = std::ranges::all_of(args, [](const Rate &x) { return x.by == 0; });
+        if (still) return opaque[op] ? Found() : Found(rate(0));
+        if (op == Op::Neg) return rate(-args[0].by, args[0].held, args[0].power);
+        if (op == Op::Add) return sum(args[0], args[1], 1);
+        if (op == Op::Sub) return sum(args[0], args[1], -1);
+        if (op == Op::Mul && args[0].by == 0) return times(args[1], graph_.arg(id, 0), 1);
+        if (op == Op::Mul && args[1].by == 0) return times(args[0], graph_.arg(id, 1), 1);
+        if (op == Op::Div && args[1].by == 0) return times(args[0], graph_.arg(id, 1), -1);
         constexpr ir::OpSet one_of_all{Op::Min, Op::Max, Op::Clamp},
             orders{Op::Less, Op::LessEqual};
-        const bool alike = std::ranges::all_of(args, [&](double x) { return x == args[0]; });
+        const bool alike = std::ranges::all_of(args, [&](const Rate &x) { return x == args[0]; });
         if (one_of_all[op] && alike) return args[0];
-        if (orders[op] && alike) return 0;
-        if (op == Op::Mix && args[2] == 0 && args[0] == args[1]) return args[0];
-        if (op == Op::Select && args[0] == 0 && args[1] == args[2]) return args[1];
-        const bool still = std::ranges::all_of(args, [](double x) { return x == 0; });
-        return still && !opaque[op] ? std::optional(0.0) : std::nullopt;
+        if (orders[op] && alike) return rate(0);
+        if (op == Op::Mix && args[2].by == 0 && args[0] == args[1]) return args[0];
+        if (op == Op::Select && args[0].by == 0 && args[1] == args[2]) return args[1];
+        return {};
     }
 
     const Graph &graph_;
-    std::unordered_map<NodeId, std::optional<double>> known_;
+    std::unordered_map<NodeId, Found> known_;
 };
+
+// Two numbers without what both are times, or over, that does not vary.
+MovedPair without_common(const Graph &graph, MovedPair pair) {
+    for (bool again = true; again;) {
+        again = false;
+        const ir::Node a = graph[pair.a], b = graph[pair.b];
+        if (a.op != b.op) break;
+        const auto held = [&](NodeId id) {
+            return !graph.reads(id).point && !graph.reads(id).free_vars;
+        };
+        for (int i = 0; i < (a.op == Op::Mul ? 2 : 1) && !again; ++i) {
+            const bool unary = a.op == Op::Neg, binary = a.op == Op::Div || a.op == Op::Mul;
+            if (!unary && !binary) break;
+            const NodeId shared = binary ? graph.arg(pair.a, 1 - i) : NodeId{};
+            if (binary && (shared != graph.arg(pair.b, 1 - i) || !held(shared))) continue;
+            pair.a = graph.arg(pair.a, i), pair.b = graph.arg(pair.b, i);
+            again = true;
+        }
+    }
+    return pair;
+}
 
 // Pairs of numbers that stand together in a least, a greatest, a sum or a comparison, from the top
 // of the expression down; those of the top itself say nothing new.
@@ -99,9 +171,10 @@ std::vector<MovedPair> pairs_in(const Graph &graph, NodeId root) {
                        (graph.reads(x).point || graph.reads(x).free_vars);
             };
             const MovedPair moved{a, b, op == Op::Add ? -1.0 : 1.0};
-            if (a != b && may_be(a) && may_be(b) && std::ranges::find(out, moved) == out.end())
-                out.push_back(moved);
-            if (out.size() == max_pairs) return out;
+            const bool both = a != b && may_be(a) && may_be(b);
+            for (const MovedPair &pair : {moved, without_common(graph, moved)})
+                if (both && std::ranges::find(out, pair) == out.end()) out.push_back(pair);
+            if (out.size() >= max_pairs) return out;
         }
         if (opaque[op]) continue;
         for (NodeId arg : graph.args(id))
@@ -148,20 +221,68 @@ double steepest(Flattening &context, NodeId twice, double reach) {
     return std::ranges::max(steep);
 }
 
+// Numbers that are the same for all points, and that something else is divided by.
+std::vector<NodeId> divisors_in(const Graph &graph, NodeId root) {
+    constexpr std::size_t most = 2;
+    std::vector<NodeId> out, todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty() && out.size() < most && seen.size() < max_nodes_of_mean) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!graph.reads(id).point || opaque[graph[id].op] || !seen.insert(id).second) continue;
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+        if (graph[id].op != Op::Div) continue;
+        const NodeId by = graph.arg(id, 1);
+        const ir::Graph::Reads reads = graph.reads(by);
+        const bool is_held = !reads.point && !reads.free_vars && (reads.params || reads.time);
+        if (is_held && graph[by].type == ir::Type::Float && std::ranges::find(out, by) == out.end())
+            out.push_back(by);
+    }
+    return out;
+}
+
+// G(d), and 2 G(d)/s - d.
+struct Halves {
+    Flattening &context;
+    NodeId scalar;
+    MovedPair moved;
+    double by;
+
+    NodeId at(NodeId d) {
+        return ir::substitute(context.graph, scalar,
+                              {{moved.a, d}, {moved.b, context.graph.number(0)}});
+    }
+    NodeId twice(NodeId g, NodeId d) {
+        Graph &graph = context.graph;
+        return graph.sub(graph.mul(graph.number(2 / by), g), d);
+    }
+    double steepest_for(double reach) {
+        Graph &graph = context.graph;
+        const NodeId d = graph.component(graph.point(), 0), g = at(d), plain = twice(g, d);
+        const double at_once = steepness(context, *context.ranges, plain, reach);
+        if (at_once <= 1 + rounding) return at_once;
+        // With d = q x the slope by d is that of G(q x)/q by x, in which widths of q cancel.
+        for (const NodeId q : divisors_in(graph, g)) {
+            const Interval size = range_of(context, *context.ranges, q, {})[0];
+            if (!(size.lo > 0) || !size.finite()) continue;
+            const NodeId scaled = twice(graph.div(at(graph.mul(q, d)), q), d);
+            const double most = steepness(context, *context.ranges, scaled, reach / size.lo);
+            if (most <= 1 + rounding) return most;
+        }
+        return steepest(context, plain, reach);
+    }
+};
+
 // How far beyond 0..1 the weights may lie, and up to which sizes; nothing where that is too far.
 struct Weights {
     double beyond, reach;
 };
 std::optional<Weights> weights_of(Flattening &context, NodeId scalar, const MovedPair &moved,
                                   double by) {
-    Graph &graph = context.graph;
-    const NodeId d = graph.component(graph.point(), 0);
-    const NodeId g = ir::substitute(graph, scalar, {{moved.a, d}, {moved.b, graph.number(0)}});
-    const NodeId twice = graph.sub(graph.mul(graph.number(2 / by), g), d);
+    Halves halves{context, scalar, moved, by};
     for (const double reach : reaches) {
-        const double most = steepest(context, twice, reach);
+        const double most = halves.steepest_for(reach);
         if (most <= max_steepness) return Weights{most <= 1 + rounding ? 0 : (most - 1) / 2, reach};
-        if (std::isfinite(most)) break;
     }
     return {};
 }

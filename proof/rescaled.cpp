@@ -4,6 +4,7 @@
 #include "proof/rescaled.h"
 
 #include "proof/forms.h"
+#include "proof/guarded.h"
 #include "proof/smooth.h"
 
 #include <algorithm>
@@ -166,7 +167,11 @@ class Inward {
     NodeId power_of(NodeId id, double exponent, int power) {
         const double inner = power / exponent;
         if (!(inner >= 1 && inner <= max_power) || std::floor(inner) != inner) return {};
-        return with_args(id, int(inner), {0});
+        const NodeId scaled = with_args(id, int(inner), {0});
+        // Ranges may say of the one that it is not below 0, and of the other no more.
+        const bool is_root = std::floor(exponent) != exponent;
+        const bool is_kept = scaled && is_root && is_never_negative(graph_, graph_.arg(id, 0));
+        return is_root && !is_kept ? NodeId{} : scaled;
     }
 
     // The smooth extremum of s x and s y within s k, written as it was (smooth.h).
