@@ -20,10 +20,11 @@ using ir::rounding::up;
 
 constexpr std::size_t max_nodes_composed = 700; // of a field that is looked into
 constexpr std::size_t max_coordinates = 28;     // expressions that a vector may be made of
-constexpr std::size_t max_affine_tries = 8;
-constexpr std::size_t max_parts = 64;           // of a field
-constexpr std::size_t max_work = 5'000'000;     // for one field that is refused
-constexpr std::size_t max_work_loose = 500'000; // … that is not as flat as it might be
+constexpr std::size_t max_affine_tries = 8, max_warped = 2;
+constexpr std::size_t max_parts = 64;              // of a field
+constexpr std::size_t max_work = 5'000'000;        // for one field that is refused
+constexpr std::size_t max_work_moved = 10'000'000; // … that reads vectors to which noise is added
+constexpr std::size_t max_work_loose = 500'000;    // … that is not as flat as it might be
 constexpr double loose_part = 1.3; // a bound over the slope seen, above which it is looked at
 constexpr double as_flat = 1e-6;   // of a slope: what is rounded
 constexpr double tight = 1.1; // a bound over the slope seen, with which no other vector is tried
@@ -44,6 +45,8 @@ class Inners {
         std::ranges::sort(parts_); // what others are made of first
         parts_.resize(std::min(parts_.size(), max_coordinates));
         std::ranges::reverse(parts_);
+        std::ranges::sort(warped_);
+        std::ranges::reverse(warped_);
     }
 
     // Of moved and turned coordinates: many, what is made of others first.
@@ -59,8 +62,26 @@ class Inners {
         choose([](NodeId) { return true; }, 2, out);
         return out;
     }
+    // Of vectors that something else is added to, as noise: the largest.
+    std::vector<Inner> warped() {
+        std::vector<Inner> out;
+        for (const NodeId id : warped_)
+            if (out.size() < max_warped) try_these({id}, out);
+        return out;
+    }
 
   private:
+    // coordinates and what is not made of folds
+    bool is_warped(NodeId id) {
+        const ir::Node node = graph_[id];
+        if (node.op != Op::Add && node.op != Op::Sub) return false;
+        for (int i = 0; i < 2; ++i)
+            if (read_.below(graph_.arg(id, i)).is_affine &&
+                graph_.reads(graph_.arg(id, 1 - i)).point)
+                return true;
+        return false;
+    }
+
     // Moved, turned and folded coordinates below the root; false where there is too much to look at.
     bool collect() {
         std::vector<NodeId> todo{root_};
@@ -76,6 +97,9 @@ class Inners {
                 type == ir::Type::Float || type == ir::Type::Vec2 || type == ir::Type::Vec3;
             if (fits && id != root_ && !graph_.reads(id).free_vars && read_.below(id).is_fold) {
                 parts_.push_back(id);
+            } else if (ir::is_vector(type) && fits && id != root_ && !graph_.reads(id).free_vars &&
+                       is_warped(id)) {
+                warped_.push_back(id);
             }
             todo.insert(todo.end(), graph_.args(id).begin(), graph_.args(id).end());
             if (graph_[id].op != Op::Loop) continue;
@@ -136,7 +160,7 @@ class Inners {
     ir::Graph &graph_;
     ReadThrough &read_;
     NodeId root_;
-    std::vector<NodeId> parts_;
+    std::vector<NodeId> parts_, warped_;
 };
 
 // `root` with the point in the place of the vector.
@@ -199,6 +223,39 @@ Image image_of(Flattening &context, const Ranges &ranges, NodeId vector, double 
     return out;
 }
 
+// Noise, and a hash as it is written by hand.
+bool is_noise(const ir::Graph &graph, NodeId id) {
+    constexpr ir::OpSet noise{Op::Perlin, Op::Simplex,   Op::ValueNoise,
+                              Op::Worley, Op::SpotNoise, Op::Hash};
+    if (noise[graph[id].op]) return true;
+    if (graph[id].op != Op::Fract || graph[graph.arg(id, 0)].op != Op::Mul) return false;
+    const NodeId product = graph.arg(id, 0);
+    return graph[graph.arg(product, 0)].op == Op::Sin || graph[graph.arg(product, 1)].op == Op::Sin;
+}
+
+// Whether noise is added to a vector: a slope of it that is seen is one that it may have, and so is
+// what is seen of all that is made of it.
+bool is_moved_by_noise(const ir::Graph &graph, NodeId root) {
+    std::vector<std::pair<NodeId, bool>> todo{
+        {root, false}}; // and whether a sum of vectors is above
+    std::unordered_set<NodeId> seen, seen_below;
+    while (!todo.empty() && seen.size() <= max_nodes_composed) {
+        const auto [id, is_below] = todo.back();
+        todo.pop_back();
+        if (!id || !(is_below ? seen_below : seen).insert(id).second) continue;
+        if (is_below && is_noise(graph, id)) return true;
+        const ir::Node node = graph[id];
+        const bool moves = ir::is_vector(node.type) && (node.op == Op::Add || node.op == Op::Sub);
+        for (const NodeId arg : graph.args(id)) todo.emplace_back(arg, is_below || moves);
+        if (node.op == Op::Call)
+            todo.emplace_back(graph.function(ir::FunctionId{node.payload}).result, is_below);
+        if (node.op == Op::Loop)
+            for (const NodeId next : graph.loop(ir::LoopId{node.payload}).next)
+                todo.emplace_back(next, is_below);
+    }
+    return false;
+}
+
 class Parts {
   public:
     Parts(Flattening &context, const Ranges &ranges, const Domain &domain, const Budget &budget)
@@ -209,14 +266,27 @@ class Parts {
 
     std::optional<FieldBound> of(NodeId field, std::size_t allowed) {
         field = ir::without_calls(graph_, field, max_nodes_composed).root;
+        is_moved_ = is_moved_by_noise(graph_, field);
+        if (is_moved_) { // another vector in each turn
+            const auto written = ir::without_loops(graph_, field, max_nodes_composed);
+            if (written.all) field = written.root;
+        }
         if (!is_small(field)) return {};
         const bool first = budget_.levels + 1 == Budget{}.levels;
         const std::size_t left = context_.work.left, most = std::min(left / 4, allowed);
         if (first) context_.work.left = most;
-        std::optional<FieldBound> out = through_vector(field);
-        if (!out && first) {
+        is_moved_ = first && is_moved_;
+        const auto look = [&] {
+            std::optional<FieldBound> found = through_vector(field);
+            if (found || !first) return found;
             look_below(field);
-            if (!held_.empty()) out = search(field);
+            if (!held_.empty()) found = search(field);
+            return found;
+        };
+        std::optional<FieldBound> out = look();
+        if (!out && is_moved_) {
+            is_moved_ = false;
+            out = look();
         }
         if (first) context_.work.left = left - (most - context_.work.left);
         return out;
@@ -246,6 +316,9 @@ class Parts {
             if (found && (!best || found->lipschitz < best->lipschitz)) best = found;
             return best && best->lipschitz <= tight * best->sampled;
         };
+        for (const Inner &inner : inners.warped())
+            if (try_one(inner, slope_of(inner))) break;
+        if (is_moved_) return best;
         const Inner *flattest = nullptr;
         double slope = infinity;
         const std::vector<Inner> affine = inners.affine();
@@ -315,7 +388,8 @@ class Parts {
             if (!graph_.reads(id).point || read_.below(id).is_affine || !seen.insert(id).second)
                 continue;
             const bool scalar = graph_[id].type == ir::Type::Float && !graph_.reads(id).free_vars;
-            if (scalar && ++looked <= max_parts) {
+            const bool is_such = !is_moved_ || !Inners(graph_, read_, id).warped().empty();
+            if (scalar && is_such && ++looked <= max_parts) {
                 const FieldBound own = bound_of_itself(id);
                 if (is_near(graph_, id, own)) continue;
                 if (const auto bound = through_vector(id);
@@ -357,6 +431,7 @@ class Parts {
     const Domain &domain_;
     Budget budget_;
     ReadThrough read_;
+    bool is_moved_ = false; // by noise: such vectors alone are looked for
     std::vector<std::pair<NodeId, FieldBound>> held_;
 };
 
@@ -365,13 +440,16 @@ class Parts {
 bool is_near(const ir::Graph &graph, NodeId field, const FieldBound &bound) {
     const ir::Graph::Reads reads = graph.reads(field);
     const double most = reads.time || reads.params ? 1 : loose_part;
-    return bound.lipschitz <= most * bound.sampled;
+    return bound.lipschitz <= most * bound.sampled && !is_moved_by_noise(graph, field);
 }
 
 std::optional<FieldBound> bound_by_parts(Flattening &context, const Ranges &ranges, NodeId field,
                                          const Domain &domain, const Budget &budget, bool refused) {
     if (budget.levels <= 0 || context.graph[field].type != ir::Type::Float) return {};
-    return Parts(context, ranges, domain, budget).of(field, refused ? max_work : max_work_loose);
+    const std::size_t allowed = is_moved_by_noise(context.graph, field) ? max_work_moved
+                                : refused                               ? max_work
+                                                                        : max_work_loose;
+    return Parts(context, ranges, domain, budget).of(field, allowed);
 }
 
 } // namespace fathom::proof
