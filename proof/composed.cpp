@@ -21,10 +21,11 @@ using ir::rounding::up;
 constexpr std::size_t max_nodes_composed = 700; // of a field that is looked into
 constexpr std::size_t max_coordinates = 28;     // expressions that a vector may be made of
 constexpr std::size_t max_affine_tries = 8, max_warped = 2;
-constexpr std::size_t max_parts = 64;              // of a field
-constexpr std::size_t max_work = 5'000'000;        // for one field that is refused
-constexpr std::size_t max_work_moved = 10'000'000; // … that reads vectors to which noise is added
-constexpr std::size_t max_work_loose = 500'000;    // … that is not as flat as it might be
+constexpr std::size_t max_parts = 64;       // of a field
+constexpr std::size_t max_work = 5'000'000; // for one field that is refused
+// … that reads vectors to which noise is added, and no param: else it is asked for many of its values.
+constexpr std::size_t max_work_moved = 10'000'000;
+constexpr std::size_t max_work_loose = 500'000; // … that is not as flat as it might be
 constexpr double loose_part = 1.3; // a bound over the slope seen, above which it is looked at
 constexpr double as_flat = 1e-6;   // of a slope: what is rounded
 constexpr double tight = 1.1; // a bound over the slope seen, with which no other vector is tried
@@ -446,9 +447,11 @@ bool is_near(const ir::Graph &graph, NodeId field, const FieldBound &bound) {
 std::optional<FieldBound> bound_by_parts(Flattening &context, const Ranges &ranges, NodeId field,
                                          const Domain &domain, const Budget &budget, bool refused) {
     if (budget.levels <= 0 || context.graph[field].type != ir::Type::Float) return {};
-    const std::size_t allowed = is_moved_by_noise(context.graph, field) ? max_work_moved
-                                : refused                               ? max_work
-                                                                        : max_work_loose;
+    const bool may_be_hard = !context.graph.reads(field).params;
+    const std::size_t allowed = may_be_hard && is_moved_by_noise(context.graph, field)
+                                    ? max_work_moved
+                                : refused ? max_work
+                                          : max_work_loose;
     return Parts(context, ranges, domain, budget).of(field, allowed);
 }
 
