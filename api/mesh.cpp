@@ -7,6 +7,7 @@
 #include "mesh/write.h"
 
 #include <fmt/format.h>
+#include <utility>
 
 #include <cmath>
 
@@ -66,9 +67,14 @@ std::string advice_on_drawn(const ir::Scene &scene, const fathom::mesh::Settings
                             const fathom::mesh::Made &made) {
     constexpr std::size_t many = 8; // of these, one is thin: no mere edges and points
     const fathom::mesh::Octree &octree = made.octree;
+    const std::int32_t side = octree.lattice.cells(octree.lattice.level);
+    std::array<std::int32_t, 3> last{-1, -1, -1}; // of a divided drawing cell one part speaks
     std::vector<fathom::mesh::Cell> cells = open_leaves(octree);
     std::erase_if(cells, [&](const fathom::mesh::Cell &cell) {
-        return !octree.nodes[static_cast<std::size_t>(cell.node)].crossed();
+        if (!octree.nodes[static_cast<std::size_t>(cell.node)].crossed()) return true;
+        const std::array<std::int32_t, 3> drawn{cell.at[0] / side, cell.at[1] / side,
+                                                cell.at[2] / side};
+        return std::exchange(last, drawn) == drawn;
     });
     fathom::mesh::Progress progress;
     const fathom::mesh::Field field(scene, settings.time, settings.bounds);
@@ -348,7 +354,7 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
             list_undecided(made.octree, undecided, mesh);
             if (!undecided.empty())
                 mesh.message = advice_of(ir_of(scene), settings, made, undecided);
-            else if (!options.certify)
+            else
                 mesh.message = advice_on_drawn(ir_of(scene), settings, made);
             mesh.vertices = std::move(made.mesh.vertices);
             mesh.normals = std::move(made.mesh.normals);

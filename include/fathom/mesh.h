@@ -116,8 +116,9 @@ struct MeshSimplification {
  *  threads. Empty unless `status` is Done. */
 struct Mesh {
     MeshStatus status = MeshStatus::Done;
-    /** Why there is none; or what shows undecided cells; or, without a certificate, how thin walls and
-     *  gaps are that cells are too large for. In lower case. */
+    /** Why there is none; or what shows undecided cells; or how thin walls and gaps are that cells are
+     *  too large for: there may be holes in them, also where a certificate says how far the mesh is
+     *  from the surface. In lower case. */
     std::string message;
     std::vector<Point> vertices, normals;
     std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -55,7 +55,8 @@ TEST_CASE("--json prints the certificate, and says partial where something is un
     CHECK(shell(folder, "fathom mesh ball.sdf --json -o -").exit == 2);
 }
 
-TEST_CASE("walls thinner than cells are said, with what shows them, also without a certificate") {
+TEST_CASE(
+    "walls thinner than cells are said, with what shows them, with a certificate and without") {
     ScratchFolder folder;
     for (const char *text :
          {"sphere(2) - sphere(1.98)", "(box(2) - box(1.98)).rotate(0.3, axis: [1, 2, 3])"}) {
@@ -67,6 +68,15 @@ TEST_CASE("walls thinner than cells are said, with what shows them, also without
     }
     folder.write("thick.sdf", "sphere(2) - sphere(1)\n");
     CHECK(shell(folder, "fathom mesh thick.sdf --resolution 24 -o a.stl").err.empty());
+    CHECK(shell(folder, "fathom mesh thick.sdf --resolution 24 --json -o a.stl").err.empty());
+    // within the certified distance a wall may still have holes
+    folder.write("vase.sdf", "polygon([[0, -1], [0.5, -1], [0.8, -0.2], [0.4, 0.6], [0.6, 1], "
+                             "[0.57, 1], [0.37, 0.6], [0.77, -0.2], [0.48, -0.95], [0, -0.95]])"
+                             ".revolve()\n");
+    const Result vase = shell(folder, "fathom mesh vase.sdf --resolution 64 --json -o a.stl");
+    CHECK(contains(vase.out, "{\"status\":\"certified\","));
+    CHECK(contains(vase.err, "walls or gaps may have holes: one is about 0.02"));
+    CHECK(shell(folder, "fathom mesh vase.sdf --resolution 128 --json -o a.stl").err.empty());
 }
 
 TEST_CASE("--simplify writes fewer triangles, and the certificate is of these") {
