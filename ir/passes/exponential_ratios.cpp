@@ -80,7 +80,7 @@ NodeId sigmoid_ratio(Graph &graph, NodeId above, NodeId below) {
     const NodeId ratio = hyperbolic_ratio(graph, v);
     if (!ratio) return {};
     const double by = (negative ? -sign : sign) / found->base();
-    return graph.mul(graph.mul(graph.number(by), factor), graph.sub(v, ratio));
+    return graph.mul({graph.mul(graph.number(by), factor), graph.sub(v, ratio)});
 }
 
 // u - v, with a factor or divisor of both before it.
@@ -118,7 +118,7 @@ NodeId mean_by_exponentials(Graph &graph, NodeId above, NodeId below) {
                      y = weighed_by(graph, graph.arg(above, 1 - i), weights[1]);
         if (!x || !y || graph[x].type != Type::Float || graph[y].type != Type::Float) continue;
         const NodeId ratio = graph.make(u->op, {difference(graph, u->u, v->u)});
-        return graph.add({x, graph.div(graph.sub(y, x), graph.add(graph.number(1), ratio))});
+        return graph.add({x, graph.div({graph.sub(y, x), graph.add(graph.number(1), ratio)})});
     }
     return {};
 }
