@@ -7,9 +7,10 @@
 #include "mesh/write.h"
 
 #include <fmt/format.h>
-#include <utility>
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace fathom::v1 {
 namespace {

@@ -245,9 +245,8 @@ inline constexpr float nearer = 0.9f;
 inline constexpr int occlusion_samples = 5;
 inline constexpr float occlusion_reach = 0.075f; // of half the height that is seen at the focus
 inline constexpr float nearly = 0.98f;
-inline constexpr float occlusion_fine = 1.0f / 256;         // of the way to a sample, by its weight
-inline constexpr double usual_extent = 0.41421356237309503; // tan of half the angle of view
-inline constexpr int descent_steps = 8;                     // to the surface
+inline constexpr float occlusion_fine = 1.0f / 256; // of the way to a sample, by its weight
+inline constexpr int descent_steps = 8;             // to the surface
 inline constexpr float descent_apart =
     1.0f / 64; // the square of a sine: two faces that are not one
 inline constexpr int most_slides = 6, occlusion_slides = 1; // along it
@@ -284,6 +283,8 @@ inline constexpr int deep = 2;               // touches not above 0 that are a s
 inline constexpr int nearing = 3;            // samples, by which an estimate is hit
 inline constexpr int many_steps = 256;       // red in a picture of steps
 inline constexpr int budget = 65536;         // evaluations a ray, where the scene does not say
+// tan of half the angle of view that a camera has where nothing is said (view.cpp)
+inline constexpr double usual_extent = 0.41421356237309503;
 inline constexpr float shadow_bias = 4;
 inline constexpr float min_angle = 0.002f; // a hard shadow's edge, soft enough not to flicker
 inline constexpr std::array<float, 3> background{0.35f, 0.45f, 0.6f};

@@ -265,10 +265,9 @@ class Parts {
         --budget_.levels;
     }
 
-    std::optional<FieldBound> of(NodeId field, std::size_t allowed) {
+    std::optional<FieldBound> of(NodeId field, bool is_moved, std::size_t allowed) {
         field = ir::without_calls(graph_, field, max_nodes_composed).root;
-        is_moved_ = is_moved_by_noise(graph_, field);
-        if (is_moved_) { // another vector in each turn
+        if (is_moved) { // another vector in each turn
             const auto written = ir::without_loops(graph_, field, max_nodes_composed);
             if (written.all) field = written.root;
         }
@@ -276,7 +275,7 @@ class Parts {
         const bool first = budget_.levels + 1 == Budget{}.levels;
         const std::size_t left = context_.work.left, most = std::min(left / 4, allowed);
         if (first) context_.work.left = most;
-        is_moved_ = first && is_moved_;
+        is_moved_ = first && is_moved;
         const auto look = [&] {
             std::optional<FieldBound> found = through_vector(field);
             if (found || !first) return found;
@@ -447,12 +446,10 @@ bool is_near(const ir::Graph &graph, NodeId field, const FieldBound &bound) {
 std::optional<FieldBound> bound_by_parts(Flattening &context, const Ranges &ranges, NodeId field,
                                          const Domain &domain, const Budget &budget, bool refused) {
     if (budget.levels <= 0 || context.graph[field].type != ir::Type::Float) return {};
-    const bool may_be_hard = !context.graph.reads(field).params;
-    const std::size_t allowed = may_be_hard && is_moved_by_noise(context.graph, field)
-                                    ? max_work_moved
-                                : refused ? max_work
-                                          : max_work_loose;
-    return Parts(context, ranges, domain, budget).of(field, allowed);
+    const bool is_moved = is_moved_by_noise(context.graph, field);
+    std::size_t allowed = refused ? max_work : max_work_loose;
+    if (is_moved && !context.graph.reads(field).params) allowed = max_work_moved;
+    return Parts(context, ranges, domain, budget).of(field, is_moved, allowed);
 }
 
 } // namespace fathom::proof

@@ -25,9 +25,9 @@ $if FILMS
     vec3 best_v = v, best_way = v;
     float best_g = g, before = g;
     int stalls = 0, look = -1; // of the circle round it
-    bool none = false; // no solid is there: what is beside it? It is so far from 0:
+    bool none = false; // no solid is at `best`, where the field is 0 so far on; so what is beside it is looked for:
     float away_there = 0.0, fine_found = fine;
-    int beside = -1; // look on the circles
+    int beside = -1; // looks on the circles about `middle`
     vec3 middle = v, side_x = v, side_y = v, behind = v;
     float across = 0.0, angle_in = 0.0, beside_turn = 0.5 * $CIRCLE_TURN, share_in = 1.0, share_out = 0.0;
 $end
@@ -199,7 +199,7 @@ $if FILMS
                 beside = 0;
             }
             bool ended = beside == $CIRCLES_LOOKS + 3 * $CIRCLE_HALVINGS;
-            int third = (beside - $CIRCLES_LOOKS) % 3;
+            int third = max(beside - $CIRCLES_LOOKS, 0) % 3;
             float share = ended ? share_in : 0.5 * (share_out + share_in), there = angle_in;
             if (!ended && beside > $CIRCLES_LOOKS) there += third == 0 ? 0.0 : third == 1 ? beside_turn : -beside_turn;
             if (beside < $CIRCLES_LOOKS) {
