@@ -3,6 +3,7 @@
 #include "ir/passes/inline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 #include <unordered_set>
@@ -16,7 +17,11 @@ namespace {
 
 constexpr std::size_t most_params = 4, most_moving = 2, most_nodes = 4000;
 constexpr double least_width = 1e-3; // of what moves: of one moment it is what rounding makes of it
-constexpr int range_pieces = 8;      // of a range
+constexpr int range_pieces = 8;      // of a range on one side of 0
+// … that ends at 0, or has it inside: the ways from there to an end.
+constexpr std::array ways_to_one{1 / 64.0, 1 / 16.0, 1 / 8.0, 1 / 4.0, 3 / 8.0,
+                                 1 / 2.0,  5 / 8.0,  3 / 4.0, 7 / 8.0};
+constexpr std::array ways_to_both{1 / 8.0, 1 / 2.0, 3 / 4.0};
 constexpr int most_halvings = 3;
 constexpr double pays_from = 1.25;     // times the present bound, from where on a formula is
 constexpr double near_enough = 1.1;    // a line this near the bound in its middle is not halved
@@ -245,33 +250,57 @@ class ParamBounds {
         most = most ? graph_.make(Op::Max, {most, line}) : line;
     }
 
-    // Pieces of one ratio, where there is one: what scales by a param has it for a slope.
+    // Pieces of one ratio where the range is on one side of 0, for what scales by a param has it for a
+    // slope; else narrower ones towards 0.
     static std::vector<double> ends_of_pieces(Interval range) {
-        std::vector<double> out{range.lo};
-        for (int i = 1; i < range_pieces; ++i) {
-            const double way = double(i) / range_pieces;
-            out.push_back(range.lo > 0 ? range.lo * std::pow(range.hi / range.lo, way)
-                                       : range.lo + way * (range.hi - range.lo));
+        if (range.hi <= 0) {
+            std::vector<double> out = ends_of_pieces(Interval(-range.hi, -range.lo));
+            for (double &end : out) end = -end;
+            std::ranges::reverse(out);
+            return out;
         }
+        std::vector<double> out{range.lo};
+        if (range.lo > 0)
+            for (int i = 1; i < range_pieces; ++i)
+                out.push_back(range.lo * std::pow(range.hi / range.lo, double(i) / range_pieces));
+        if (range.lo < 0) {
+            for (double way : ways_to_both) out.insert(out.begin() + 1, way * range.lo);
+            out.push_back(0);
+            for (double way : ways_to_both) out.push_back(way * range.hi);
+        }
+        if (range.lo == 0)
+            for (double way : ways_to_one) out.push_back(way * range.hi);
         out.push_back(range.hi);
         return out;
     }
+    // The bound over the values from `lo` to `hi`, and a little further, for values that are rounded.
+    NodeId over(const Input &input, double lo, double hi) {
+        const Interval wider(std::max(lo - rim(lo, hi), input.range.lo),
+                             std::min(hi + rim(lo, hi), input.range.hi));
+        return graph_.number(at(input, wider));
+    }
+    static double rim(double lo, double hi) {
+        return 1e-6 * std::max(std::fabs(lo), std::fabs(hi));
+    }
     NodeId by_pieces(const Input &input) {
-        const Interval range = input.range;
-        const std::vector<double> ends = ends_of_pieces(range);
+        const std::vector<double> ends = ends_of_pieces(input.range);
         NodeId out;
-        for (std::size_t i = range_pieces; i-- > 0;) {
-            // A little wider than its place, for values that are rounded.
-            const double lo = ends[i], hi = ends[i + 1],
-                         rim = 1e-6 * std::max(std::fabs(lo), std::fabs(hi));
-            const NodeId here = graph_.number(
-                at(input, Interval(std::max(lo - rim, range.lo), std::min(hi + rim, range.hi))));
-            out = out ? graph_.make(
-                            Op::Select,
-                            {graph_.make(Op::Less, {input.value, graph_.number(hi)}), here, out})
-                      : here;
+        for (std::size_t i = ends.size() - 1; i-- > 0;) {
+            const NodeId here = over(input, ends[i], ends[i + 1]);
+            out = out ? choice(Op::Less, input.value, ends[i + 1], here, out) : here;
+        }
+        // Where a slider mostly stands: where the text puts it, and at nothing.
+        if (input.op == Op::Param) {
+            out = choice(Op::Equal, input.value, input.present,
+                         over(input, input.present, input.present), out);
+            if (input.range.lo <= 0 && input.range.hi >= 0 && input.present != 0)
+                out = choice(Op::Equal, input.value, 0, over(input, 0, 0), out);
         }
         return out;
+    }
+    NodeId choice(Op comparison, NodeId value, double with, NodeId then, NodeId otherwise) {
+        const NodeId condition = graph_.make(comparison, {value, graph_.number(with)});
+        return graph_.make(Op::Select, {condition, then, otherwise});
     }
 
     Flattening &context_;

@@ -26,6 +26,10 @@ const Case cases[] = {
      "param a = 0.5 in -3..5\nsphere(2).displace(p => a * sin(2 * p.x) * cos(p.y) / 3)\n", 0},
     {"a frequency", "param a = 1.0 in 0.5..9\nsphere(2).displace(p => 0.3 * sin(a * p.x))\n", 0.5,
      1.5},
+    {"a frequency from none on",
+     "param a = 3 in 0..20\nsphere(6).displace(p => 5 * sin(a * p.x))\n", 0},
+    {"a frequency where the text puts it",
+     "param a = 0.3 in -10..20\nsphere(6).displace(p => 5 * sin(a * p.x))\n", 0.3, 2.501},
     {"a field",
      "param a = 0.1 in 0..4\n"
      "implicit(p => length(p) - 1 + a * sin(3 * p.y) / 3, within: ball(2))\n",
