@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <new>
 
 namespace fathom::cli {
@@ -40,9 +41,10 @@ std::string of_stated(const v1::Scene &scene) {
     return fmt::format(" ({:.6g} is stated{})", at->lipschitz, steps);
 }
 
-std::string verdict_line(const v1::CompileResult &result, const std::string &file) {
+std::string verdict_line(const v1::CompileResult &result, const std::string &file, bool given) {
     const v1::Facts &facts = result.scene->facts();
     const bool at_values =
+        (given && !result.scene->params().empty()) ||
         std::ranges::count(result.diagnostics, "range-unproved", &v1::Diagnostic::code) > 0;
     const std::string stated =
         facts.status == v1::Status::Assumed ? of_stated(*result.scene) : std::string();
@@ -110,13 +112,19 @@ void explain(const v1::Scene &scene, Terminal &terminal) {
     explain_pruning(scene, terminal);
 }
 
+// Whether the params' present values alone are proved.
+bool are_values_given(const CheckCommand &command) {
+    return command.time || !command.scene.overrides.empty();
+}
+
 Exit say(const CheckCommand &command, const SceneArguments &scene, const v1::CompileResult &result,
          Terminal &terminal) {
     if (!command.json || is_about_no_text(result)) {
         const Exit exit = report(result, terminal);
         if (exit != done) return exit;
         if (command.explain) explain(*result.scene, terminal);
-        if (!command.json) terminal.say(verdict_line(result, scene.file));
+        if (!command.json)
+            terminal.say(verdict_line(result, scene.file, are_values_given(command)));
     }
     if (command.json) terminal.put(v1::verdict_json(result));
     return result ? done : scene_error;
@@ -135,9 +143,10 @@ Exit run(const CheckCommand &command, Terminal &terminal) {
                 !in_proved_time(result.scene->facts(), *command.time, *command.time, terminal);
             return beyond ? usage_error : say(command, scene, result, terminal);
         };
-        const v1::CompileOptions options =
-            command.time ? library_options(scene, *command.time, *command.time)
-                         : library_options(scene);
+        v1::CompileOptions options = library_options(scene);
+        if (are_values_given(command))
+            options.times = {command.time.value_or(0),
+                             command.time.value_or(std::numeric_limits<double>::infinity())};
         worst = std::max(worst, command.watch ? watch_scene(scene, options, terminal, act)
                                               : act(v1::compile_file(file, options)));
     }

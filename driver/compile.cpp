@@ -166,7 +166,10 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
     proof_options.limit_help = limit_help(options.limits, &Limits::proof);
     proof_options.cells = options.cells;
     if (options.times)
-        proof_options.times = ir::Interval(options.times->first, options.times->second);
+        proof_options.times = ir::Interval(
+            options.times->first, std::isinf(options.times->second)
+                                      ? std::max(options.times->first, out.scene.render.time_end)
+                                      : options.times->second);
     effort.work -= proof::prove(out.scene, out.diagnostics, proof_options);
     out.proof_steps = options.limits.proof - effort.work;
     if (effort.stop.now()) return cancel(out);

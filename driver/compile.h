@@ -36,7 +36,8 @@ struct CompileOptions {
     std::function<void(Phase)> entered;                 // may be empty
     bool strict_proof = false; // an error at all that is not proved but by the library's claims
     // Proved for the params' present values and from the first to the last of these times alone, in
-    // seconds: for what is drawn once. None: for all that the scene allows.
+    // seconds: for what is drawn once; an infinite last one is the end of the scene's. None: for all
+    // that the scene allows.
     std::optional<std::pair<double, double>> times;
     // Bounds by cells of what is marched and steep, so many along a side at most (proof/prove.h):
     // for what is drawn. 0: none but those of fields in a region.

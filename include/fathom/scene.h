@@ -152,7 +152,7 @@ struct CompileOptions {
     bool strict_proof = false;
     /** None: the facts hold for all values that the params' ranges and the scene's times allow. Else
      *  for the params' present values and from the first to the second of these times alone, in
-     *  seconds: for what is drawn once. */
+     *  seconds: for what is drawn once. An infinite second one is the end of the scene's times. */
     std::optional<std::array<double, 2>> times;
     /** For what is drawn: bounds by cells of what is steep, at most so many cells along a side, 4 or
      *  more. A field then takes longer steps, and a compilation longer. The program takes 16 for
