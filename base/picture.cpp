@@ -4,6 +4,7 @@
 #include <png.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fathom {
@@ -43,11 +44,11 @@ std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const fl
             encoded[3 * i + c] = srgb_of_linear(std::fmin(std::fmax(rgba[4 * i + c], 0.0f), 1.0f));
     std::vector<std::uint8_t> rough(w * h);
     const auto compare = [&](std::size_t a, std::size_t b) {
+        float most = alpha ? std::fabs(rgba[4 * a + 3] - rgba[4 * b + 3]) : 0;
         for (std::size_t c = 0; c < 3; ++c)
-            if (std::fabs(encoded[3 * a + c] - encoded[3 * b + c]) > rough_contrast)
-                rough[a] = rough[b] = 1;
-        if (alpha && std::fabs(rgba[4 * a + 3] - rgba[4 * b + 3]) > rough_contrast)
-            rough[a] = rough[b] = 1;
+            most = std::fmax(most, std::fabs(encoded[3 * a + c] - encoded[3 * b + c]));
+        const std::uint8_t found = most > edge_contrast ? 2 : most > rough_contrast ? 1 : 0;
+        rough[a] = std::max(rough[a], found), rough[b] = std::max(rough[b], found);
     };
     for (std::size_t y = 0; y < h; ++y)
         for (std::size_t x = 0; x < w; ++x) {

@@ -28,10 +28,10 @@ std::uint8_t srgb_byte(float linear, float dither = 0.5f);
 // Of linear RGBA, rows from the top; every pixel opaque, dithered.
 Picture picture_of_linear(int width, int height, std::span<const float> rgba);
 
-// The pixels that one sample does not do for: those which differ from one of the four beside them
-// by more than `rough_contrast` in some channel, encoded 0..1, or in alpha where that counts. 1 or 0 a
-// pixel; of linear RGBA.
-inline constexpr float rough_contrast = 0.08f;
+// The pixels that one sample does not do for, by how much they differ from one of the four beside
+// them in some channel, encoded 0..1, or in alpha where that counts: 2 above `edge_contrast`, 1 above
+// `rough_contrast`, else 0. Of linear RGBA.
+inline constexpr float rough_contrast = 0.08f, edge_contrast = 0.2f;
 std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const float> rgba,
                                        bool alpha = false);
 

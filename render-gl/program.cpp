@@ -22,6 +22,7 @@ namespace {
 // counted a ray takes some for its place, its normal and its penumbras.
 constexpr double most_loop_turns = 50000;
 constexpr int kept_textures = static_cast<int>(std::tuple_size_v<decltype(Pass::kept)>);
+constexpr int places_textures = 1;                 // behind them
 constexpr const char *kept_name = "fathom_kept_0"; // stands in texts by passes
 constexpr int uncounted_steps = 128, fewest_turns = 16, most_turns = 1024;
 // Of a text that begins rays alone, which says itself where loops were ended (entry.glsl).
@@ -109,7 +110,7 @@ std::variant<Program, ProgramError> Program::build(const glsl::Output &output,
     if (passes) {
         GLint units = 16;
         glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
-        result.first_kept_unit_ = units - kept_textures;
+        result.first_kept_unit_ = units - kept_textures - places_textures;
         if (auto error = link(result.marks_, {{GL_VERTEX_SHADER, covering_triangle},
                                               {GL_FRAGMENT_SHADER, Passes::marks_text}}))
             return *error;
@@ -140,6 +141,7 @@ void Program::name_units(unsigned program) const {
         name(textures_[i].sampler, 1 + static_cast<int>(i));
     for (int i = 0; by_passes() && i < kept_textures; ++i)
         name(fmt::format("fathom_kept_{}", i), first_kept_unit_ + i);
+    if (by_passes()) name("fathom_places", first_kept_unit_ + kept_textures);
 }
 
 int Program::first_turns() const { return keeping_text_.empty() ? most_turns_ : most_at_first; }
@@ -196,6 +198,9 @@ void Program::draw(const FrameInputs &in, const std::vector<ir::Param> &params) 
                             static_cast<GLenum>(i));
             glBindTexture(GL_TEXTURE_2D, in.pass.kept[i]);
         }
+        glUniform1i(location("fathom_listed"), in.places ? 1 : 0);
+        glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(first_kept_unit_ + kept_textures));
+        glBindTexture(GL_TEXTURE_2D, in.places);
     }
 
     set_params(program, uniforms_, params);

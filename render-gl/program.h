@@ -36,6 +36,9 @@ struct FrameInputs {
     double time = 0;
     Mode mode = Mode::Picture;
     std::array<double, 4> plane{0, 0, 1, 0}; // Mode::Slice: unit normal, offset
+    // Of a program by passes: a texture that tells for each pixel of what is drawn its place in the
+    // picture, in pixels from the top left; 0: its own, by `offset`.
+    unsigned places = 0;
     // Of a program by passes: steps that a ray may take in all of them, 0: as many as the scene says;
     // and the pass.
     int budget = 0;

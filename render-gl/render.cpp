@@ -52,6 +52,65 @@ class Target {
     bool complete_ = false;
 };
 
+// A sample of a pixel beside its first one.
+struct Further {
+    std::size_t pixel;
+    int sample, samples; // which, of how many
+};
+
+// Of linear RGBA, rows from the top, by pixel. Those in `close` are of things that lie close to a ray.
+std::vector<Further> further_samples(int width, int height, std::span<const float> rgba,
+                                     std::span<const std::uint8_t> close) {
+    const std::vector<std::uint8_t> rough = rough_pixels(width, height, rgba);
+    std::vector<Further> out;
+    for (std::size_t i = 0; i < rough.size(); ++i) {
+        const int samples = ir::shading::rough_samples[close[i] ? 2 : rough[i]];
+        for (int k = 1; k < samples; ++k) out.push_back({i, k, samples});
+    }
+    return out;
+}
+
+// Where samples are seen, packed row by row: drivers shade pixels in groups, and those of a group
+// that nothing is wanted of take as long.
+class PlacesTexture {
+  public:
+    PlacesTexture(int width, int height) : width_(width) {
+        glGenTextures(1, &texture_);
+        glActiveTexture(GL_TEXTURE0);
+        glBindTexture(GL_TEXTURE_2D, texture_);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, width, height, 0, GL_RG, GL_FLOAT, nullptr);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    }
+    ~PlacesTexture() { glDeleteTextures(1, &texture_); }
+    PlacesTexture(const PlacesTexture &) = delete;
+    PlacesTexture &operator=(const PlacesTexture &) = delete;
+    GLuint texture() const { return texture_; }
+
+    // At most as many as it holds, of a picture as wide as it is. How many rows they take.
+    int fill(std::span<const Further> samples) const {
+        const auto width = static_cast<std::size_t>(width_);
+        const std::size_t rows = (samples.size() + width - 1) / width;
+        std::vector<float> places(2 * rows * width, 0.0f);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const std::array<double, 2> offset = ir::sample_offset(samples[i].sample);
+            places[2 * i] =
+                static_cast<float>(samples[i].pixel % width) + static_cast<float>(offset[0]);
+            places[2 * i + 1] =
+                static_cast<float>(samples[i].pixel / width) + static_cast<float>(offset[1]);
+        }
+        glActiveTexture(GL_TEXTURE0);
+        glBindTexture(GL_TEXTURE_2D, texture_);
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, static_cast<GLsizei>(rows), GL_RG, GL_FLOAT,
+                        places.data());
+        return static_cast<int>(rows);
+    }
+
+  private:
+    int width_;
+    GLuint texture_ = 0;
+};
+
 // One sample of a strip, whose lowest row is the picture's `bottom`. False: no memory.
 // `only`: the pixels of it that are drawn, where the program draws by passes; all without.
 bool draw_sample(const Program &program, const ir::Scene &scene, const Target &target,
@@ -123,66 +182,73 @@ std::optional<Pixels> draw(const Program &program, const ir::Scene &scene, const
     glDisable(GL_CULL_FACE);
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     bool stopped = false, good = true;
-    // Draws samples `first` to `last` strip by strip, of the pixels in `only` (rows from the top) or
-    // of all, while progress goes from `begin` to `end`; `take` gets each pixel's sum.
-    const auto draw_samples = [&](int first, int last, std::span<const std::uint8_t> only,
-                                  double begin, double end, const auto &take) {
-        std::vector<std::uint8_t> marked;
-        for (int top = 0; top < height && !stopped && good; top += rows) {
-            const int count = std::min(rows, height - top), bottom = height - top - count;
-            const auto pixel = [&](int y, int x) {
-                return static_cast<std::size_t>(top + y) * static_cast<std::size_t>(width) +
-                       static_cast<std::size_t>(x);
-            };
-            if (!only.empty()) {
-                marked.clear();
-                for (int y = count - 1; y >= 0; --y)
-                    for (int x = 0; x < width; ++x) marked.push_back(only[pixel(y, x)] ? 255 : 0);
-                if (std::ranges::find(marked, 255) == marked.end()) continue;
-            }
-            target.bind();
-            glDisable(GL_SCISSOR_TEST);
-            glClearColor(0, 0, 0, 0);
-            glClear(GL_COLOR_BUFFER_BIT);
-            for (int k = first; k < last && !stopped && good; ++k) {
-                const std::array<double, 2> offset = ir::sample_offset(k);
-                inputs.offset = {offset[0], offset[1] - bottom};
-                good = draw_sample(program, scene, target, passes, inputs, count, request.turns,
-                                   marked);
-                glFinish(); // so that progress is true, and no strip waits behind many others
-                const double done = (top + count * (k - first + 1.0) / (last - first)) / height;
-                stopped = request.progress &&
-                          !request.progress(begin + std::min(done, 1.0) * (end - begin));
-            }
-            target.bind();
-            glReadPixels(0, 0, width, count, GL_RGBA, GL_FLOAT, upward.data());
-            for (int y = 0; y < count; ++y)
-                for (int x = 0; x < width; ++x)
-                    take(pixel(y, x), upward.data() +
-                                          row * static_cast<std::size_t>(count - 1 - y) +
-                                          4 * static_cast<std::size_t>(x));
-        }
+    const auto went = [&](double progress) {
+        stopped = request.progress && !request.progress(progress);
+    };
+    const auto clear = [&] {
+        target.bind();
+        glDisable(GL_SCISSOR_TEST);
+        glClearColor(0, 0, 0, 0);
+        glClear(GL_COLOR_BUFFER_BIT);
+    };
+    const auto read = [&](int count) {
+        target.bind();
+        glReadPixels(0, 0, width, count, GL_RGBA, GL_FLOAT, upward.data());
     };
     const int samples = std::max(request.samples, 1);
+    const double first_part = smooth ? 0.5 : 1; // of the progress
     std::vector<std::uint8_t> close(smooth ? pixels.rgba.size() / 4 : 0);
-    draw_samples(0, samples, {}, 0, smooth ? 0.5 : 1, [&](std::size_t pixel, const float *sum) {
-        if (smooth) close[pixel] = sum[3] > 0.75f && sum[3] < 1;
-        for (std::size_t c = 0; c < 4; ++c)
-            pixels.rgba[4 * pixel + c] = sum[c] / static_cast<float>(samples);
-        if (mode == Mode::Linear && pixels.rgba[4 * pixel + 3] > 0.75f) // some ray was close
-            pixels.rgba[4 * pixel + 3] = 1;
-        pixels.rays += static_cast<std::uint64_t>(samples);
-    });
+    for (int top = 0; top < height && !stopped && good; top += rows) {
+        const int count = std::min(rows, height - top), bottom = height - top - count;
+        clear();
+        for (int k = 0; k < samples && !stopped && good; ++k) {
+            const std::array<double, 2> offset = ir::sample_offset(k);
+            inputs.offset = {offset[0], offset[1] - bottom};
+            good = draw_sample(program, scene, target, passes, inputs, count, request.turns, {});
+            glFinish(); // so that progress is true, and no strip waits behind many others
+            went(first_part * std::min((top + count * (k + 1.0) / samples) / height, 1.0));
+        }
+        read(count);
+        for (int y = 0; y < count; ++y)
+            for (int x = 0; x < width; ++x) {
+                const float *sum = upward.data() + row * static_cast<std::size_t>(count - 1 - y) +
+                                   4 * static_cast<std::size_t>(x);
+                const std::size_t pixel =
+                    static_cast<std::size_t>(top + y) * static_cast<std::size_t>(width) +
+                    static_cast<std::size_t>(x);
+                if (smooth) close[pixel] = sum[3] > 0.75f && sum[3] < 1;
+                float *rgba = pixels.rgba.data() + 4 * pixel;
+                for (std::size_t c = 0; c < 4; ++c) rgba[c] = sum[c] / static_cast<float>(samples);
+                if (mode == Mode::Linear && rgba[3] > 0.75f) rgba[3] = 1; // some ray was close
+                pixels.rays += static_cast<std::uint64_t>(samples);
+            }
+    }
     if (smooth && !stopped && good) {
-        std::vector<std::uint8_t> rough = rough_pixels(width, height, pixels.rgba);
-        for (std::size_t i = 0; i < rough.size(); ++i) rough[i] |= close[i];
-        constexpr int most = ir::shading::rough_samples;
-        draw_samples(1, most, rough, 0.5, 1, [&](std::size_t pixel, const float *sum) {
-            if (!rough[pixel]) return;
-            for (std::size_t c = 0; c < 3; ++c)
-                pixels.rgba[4 * pixel + c] = (pixels.rgba[4 * pixel + c] + sum[c]) / most;
-            pixels.rays += most - 1;
-        });
+        const std::vector<Further> further = further_samples(width, height, pixels.rgba, close);
+        const PlacesTexture places(width, rows);
+        const std::size_t most = static_cast<std::size_t>(width) * static_cast<std::size_t>(rows);
+        for (std::size_t i = 0; i < further.size() && !stopped && good; i += most) {
+            const std::span<const Further> now =
+                std::span(further).subspan(i, std::min(most, further.size() - i));
+            const int count = places.fill(now);
+            std::vector<std::uint8_t> marked(row / 4 * static_cast<std::size_t>(count), 0);
+            std::fill_n(marked.begin(), now.size(), std::uint8_t{255});
+            inputs.places = places.texture();
+            clear();
+            good =
+                draw_sample(program, scene, target, passes, inputs, count, request.turns, marked);
+            read(count);
+            for (std::size_t k = 0; k < now.size(); ++k)
+                for (std::size_t c = 0; c < 3; ++c)
+                    pixels.rgba[4 * now[k].pixel + c] += upward[4 * k + c];
+            went(0.5 +
+                 0.5 * static_cast<double>(i + now.size()) / static_cast<double>(further.size()));
+        }
+        for (const Further &one : further)
+            if (one.sample + 1 == one.samples)
+                for (std::size_t c = 0; c < 3; ++c)
+                    pixels.rgba[4 * one.pixel + c] /= static_cast<float>(one.samples);
+        pixels.rays += further.size();
     }
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_BLEND);

@@ -14,7 +14,7 @@ namespace fathom::gl {
 // An off-screen picture: size, view, time and samples.
 struct Request {
     int width = 800, height = 600;
-    int samples = 1; // a pixel; 0: one, and rough_samples where it is rough (base/picture.h)
+    int samples = 1; // a pixel; 0: by how rough it is (base/picture.h), of a program by passes
     double time = 0;
     std::optional<ir::View> view{};         // else the scene's own
     std::function<bool(double)> progress{}; // called now and then with 0..1; false stops

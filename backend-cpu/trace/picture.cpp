@@ -207,7 +207,8 @@ class Smooth {
     }
     void find_rough() {
         rough_ = rough_pixels(area_.width, area_.height, first_, part_.options.alpha);
-        for (std::size_t i = 0; i < rough_.size(); ++i) rough_[i] |= close_[i];
+        for (std::size_t i = 0; i < rough_.size(); ++i)
+            if (close_[i]) rough_[i] = 2;
     }
     void draw_more(Worker &worker, const Tile &tile) {
         Places places;
@@ -220,12 +221,12 @@ class Smooth {
         for (std::size_t i = 0; i < places.size(); ++i) {
             const float *first = first_.data() + 4 * place(places.x[i], places.y[i]);
             for (std::size_t c = 0; c < 4; ++c) sums[i].numbers[c] = summand(first[c]);
-            for (int sample = 1; sample < ir::shading::rough_samples; ++sample)
+            for (int sample = 1; sample < samples(places.x[i], places.y[i]); ++sample)
                 summing.add(i, places.x[i], places.y[i], sample);
         }
         summing.finish();
         for (std::size_t i = 0; i < places.size(); ++i)
-            part_.put(places.x[i], places.y[i], sums[i], ir::shading::rough_samples);
+            part_.put(places.x[i], places.y[i], sums[i], samples(places.x[i], places.y[i]));
     }
 
   private:
@@ -233,6 +234,7 @@ class Smooth {
         return static_cast<std::size_t>(y - area_.y) * static_cast<std::size_t>(area_.width) +
                static_cast<std::size_t>(x - area_.x);
     }
+    int samples(int x, int y) const { return ir::shading::rough_samples[rough_[place(x, y)]]; }
     bool is_inside(int x, int y) const {
         const Tile &r = part_.region;
         return x >= r.x && x < r.x + r.width && y >= r.y && y < r.y + r.height;
@@ -240,8 +242,9 @@ class Smooth {
 
     PartPicture &part_;
     Tile area_;
-    std::vector<float> first_;                // linear, four a pixel of the area
-    std::vector<std::uint8_t> rough_, close_; // 1 or 0
+    std::vector<float> first_;        // linear, four a pixel of the area
+    std::vector<std::uint8_t> rough_; // as rough_pixels tells
+    std::vector<std::uint8_t> close_; // 1 or 0
 };
 
 std::vector<Tile> tiles_of(const Tile &area, unsigned threads) {

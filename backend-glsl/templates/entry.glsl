@@ -9,9 +9,17 @@ $if CACHED
 $include cache_outputs
 $end
 
+$if PASSES
+uniform bool fathom_listed; // what is drawn is a list of places in the picture, in pixels from its top left
+uniform sampler2D fathom_places;
+
+$end
 void main() {
-    vec2 place = vec2(gl_FragCoord.x, fathom_resolution.y - gl_FragCoord.y);
-    fathom_color = fathom_picture(place + fathom_offset - 0.5);
+    vec2 place = vec2(gl_FragCoord.x, fathom_resolution.y - gl_FragCoord.y) + fathom_offset - 0.5;
+$if PASSES
+    if (fathom_listed) place = texelFetch(fathom_places, ivec2(gl_FragCoord.xy), 0).xy;
+$end
+    fathom_color = fathom_picture(place);
 $if CACHED
 $include cache_output
 $end

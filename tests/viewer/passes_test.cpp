@@ -73,6 +73,34 @@ TEST_CASE("passes of a picture equal one long draw to the bit") {
     }
 }
 
+TEST_CASE("where a picture is rough its pixels have two or four samples, and no others are drawn") {
+    require_context();
+    const auto made = driver::compile_text("scene.sdf", steep, "", {});
+    REQUIRE(made.good());
+    const gl::Pixels once = rendered(made.scene, 0, 1), twice = rendered(made.scene, 0, 2),
+                     four = rendered(made.scene, 0, 4);
+    for (int turns : {0, 7}) {
+        CAPTURE(turns);
+        const gl::Pixels smooth = rendered(made.scene, turns, 0);
+        std::uint64_t samples = 0;
+        int others = 0;
+        for (std::size_t i = 0; i < smooth.rgba.size(); i += 4) {
+            const auto is = [&](const gl::Pixels &of) {
+                for (std::size_t c = i; c < i + 3; ++c)
+                    if (std::abs(smooth.rgba[c] - of.rgba[c]) > 1e-4f) return false;
+                return true;
+            };
+            samples += is(once) ? 1 : is(twice) ? 2 : 4;
+            others += !is(once) && !is(twice) && !is(four);
+        }
+        CHECK(others <= 2); // places are rounded otherwise, and an edge runs there
+        const std::size_t pixels = smooth.rgba.size() / 4;
+        CHECK(samples > pixels * 11 / 10);
+        CHECK(smooth.rays < 2 * pixels);
+        CHECK(smooth.rays >= samples); // more than one of a pixel may see the same
+    }
+}
+
 TEST_CASE("rays that go through what has no inside are counted, and grazes are not") {
     require_context();
     for (const auto &[text, sheet] :
