@@ -201,6 +201,7 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
                 .help(limit_help(options.limits, &Limits::point));
         } else {
             find_framing(out.scene, out.diagnostics); // which says what a pixel shows
+            tell_of_view_inside(out.scene, out.diagnostics);
             proof::bound_rounding(out.scene, out.diagnostics, proof_options.times);
         }
         if (options.strict_proof) refuse_unproved(out);

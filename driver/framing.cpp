@@ -2,9 +2,13 @@
 #include "driver/framing.h"
 
 #include "backend-cpu/prune/solid_box.h"
+#include "ir/passes/operations.h"
+#include "ir/view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <numeric>
 #include <utility>
 
@@ -120,6 +124,33 @@ void find_framing(ir::Scene &scene, Diagnostics &diagnostics) {
         diagnostics
             .add(Code::NothingFramed, span, "this scene is empty: no point lies in the solid")
             .help("look for an intersection or a difference that leaves nothing over");
+}
+
+void tell_of_view_inside(const ir::Scene &scene, Diagnostics &diagnostics) {
+    if (scene.top_level.empty() || scene.camera.orthographic) return;
+    const ir::Graph &graph = scene.graph;
+    if (ir::operations(graph, graph.function(scene.distance).result) > most_operations_inside)
+        return;
+    const ir::View view = ir::view_of(scene, 0, 1);
+    const cpu::Program program = cpu::compile(scene, scene.distance);
+    cpu::Scratch scratch = cpu::make_scratch(program, cpu::inputs_of(scene, 0));
+    std::array<float, 3> at;
+    for (int i = 0; i < 3; ++i)
+        at[static_cast<std::size_t>(i)] = static_cast<float>(view.origin[i]);
+    const float *const in[] = {&at[0], &at[1], &at[2]};
+    float distance = 0, *const out[] = {&distance};
+    cpu::evaluate(program, scratch, in, out, 1);
+    if (!(distance < -scene.render.epsilon)) return;
+    Diagnostic &told = diagnostics.add(
+        Code::ViewInside, scene.top_level.front().span,
+        fmt::format("the view begins at [{:.3g}, {:.3g}, {:.3g}], within the solid, and so shows "
+                    "nothing of its surface",
+                    at[0], at[1], at[2]));
+    if (!scene.camera.given)
+        told.note("without a `camera(…)` the whole solid is framed from outside of its box");
+    told.help(
+        "write a `camera(at: …, look_at: …)` from a place outside the solid or in a hollow of "
+        "it, or cut the solid open, as with `- plane(Z, 0)`");
 }
 
 } // namespace fathom::driver

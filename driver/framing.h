@@ -11,4 +11,9 @@ namespace fathom::driver {
 // solid at all, a note says so and what to write.
 void find_framing(ir::Scene &scene, Diagnostics &diagnostics);
 
+// A note where the view, framed already, begins deep in the solid, at the params' present values and
+// the time 0. Not looked for in a scene of more than `most_operations_inside` operations a point.
+constexpr double most_operations_inside = 20'000;
+void tell_of_view_inside(const ir::Scene &scene, Diagnostics &diagnostics);
+
 } // namespace fathom::driver
