@@ -75,6 +75,7 @@ Values values_of(const MarcherOptions &options) {
         {"REFINED", float_literal(shading::refined)},
         {"SHADOW_ARM", float_literal(shading::shadow_arm)},
         {"CREASE", float_literal(shading::crease)},
+        {"FLAT_FROM", float_literal(shading::flat_from)},
         {"CALM", float_literal(shading::calm)},
         {"NEARING", fmt::to_string(shading::nearing)},
         {"SHARE", float_literal(1 / std::max(options.estimate, 1.0))},

@@ -115,8 +115,12 @@
 //   visibility:
 //     color = ao * diffuse * (around + fill * max(n.v, 0)) + emission
 //           + sum over lights of seen * light color
-//             * (diffuse * max(n.l, 0) + specular_intensity * specular * max(r.v, 0)^exponent)
-//     r     l mirrored in n
+//             * (diffuse * max(n.l, 0) + specular_intensity * specular * gleam)
+//     gleam  (1 + e)/(1 + exponent) * max(r.v, 0)^e, r being l mirrored in n. Where the taps lie on both
+//            sides of an edge, n is between the faces, and would show a highlight that neither has;
+//            so it is spread by how much shorter the mean of their normals is (Toksvig 2005):
+//            even = min(|gradient| / slope / flat_from, 1), with the slope of TRUE DISTANCE or 1,
+//            e = exponent * even/(even + exponent*(1 - even)); the exponent itself on what is flat
 //     seen  1 - shadow_darkness * (1 - shadow)
 //     ao    1 - ambient_occlusion * occlusion
 //     around  ambient * mix(soil, sky, (1 + n.y)/2): more comes from above, and it is cooler
@@ -257,6 +261,7 @@ inline constexpr float least_share = 1.0f / 20;    // of a slide that is tried
 inline constexpr float penumbra_fine = 1.0f / 512; // of what the light covers: how near that is
 inline constexpr float nowhere = 1e9f;             // off the way, in lights' sizes
 inline constexpr float crease = 3;
+inline constexpr float flat_from = 0.98f; // rounding and slight curves are flat
 inline constexpr float calm = 0.125f;
 inline constexpr float dark = 1.0f / 64;     // of what the light covers at s
 inline constexpr float darkest = 1.0f / 256; // of what is closed, but by what the way crosses

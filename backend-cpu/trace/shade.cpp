@@ -24,6 +24,7 @@ struct Points {
     std::vector<std::size_t> ray;
     std::vector<Vec> p, n;
     std::vector<float> t, h, slope; // of the field (TRUE DISTANCE)
+    std::vector<float> even;        // 1, or less at an edge (SHADING)
     std::vector<Material> material;
     std::size_t size() const { return ray.size(); }
 };
@@ -34,7 +35,7 @@ void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
         above[k] = at.p[k] - shading::lift * at.h[k] * rays[at.ray[k]].direction;
     const ir::Frame &frame = worker.stage.frame;
     at.slope.assign(at.size(), 1.0f);
-    if (frame.exact || frame.unit_slope || !(worker.stage.shading.ambient_occlusion > 0)) {
+    if (frame.exact || frame.unit_slope) {
         gradients(worker, above.data(), at.h.data(), gradient.data(), at.size());
     } else {
         std::vector<float> g(at.size());
@@ -46,6 +47,7 @@ void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
     for (std::size_t k = 0; k < at.size(); ++k) {
         const float size = length(gradient[k]);
         at.n.push_back(size > 0 ? gradient[k] / size : -rays[at.ray[k]].direction);
+        at.even.push_back(std::min(size / (at.slope[k] * shading::flat_from), 1.0f));
     }
 }
 
@@ -194,8 +196,12 @@ void add_lights(Worker &worker, std::span<const RayState> rays, const Points &at
         const Material &m = at.material[k];
         const float seen = 1.0f - lighting.shadow_darkness * (1.0f - shadow[i]);
         const Vec r = 2.0f * facing * at.n[k] - l;
+        const float spread = at.even[k] / (at.even[k] + m.exponent * (1 - at.even[k])),
+                    exponent = m.exponent * spread;
         float gleam = std::max(-dot(r, rays[at.ray[k]].direction), 0.0f);
-        gleam = gleam > 0 ? lighting.specular_intensity * std::pow(gleam, m.exponent) : 0.0f;
+        gleam = gleam > 0 ? lighting.specular_intensity * (1 + exponent) / (1 + m.exponent) *
+                                std::pow(gleam, exponent)
+                          : 0.0f;
         Vec &sum = colors[at.ray[k]];
         sum = sum + seen * vec(worker.stage.lights[light].color) *
                         (facing * m.diffuse + gleam * m.specular);

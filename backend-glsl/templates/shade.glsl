@@ -7,7 +7,7 @@ vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
     vec3 above = p - $LIFT * h * direction;
     vec3 g = vec3(0.0);
     vec3 n = -direction;
-    float slope = 0.0;
+    float slope = 0.0, even = 1.0; // even: less at an edge
 $if MANY_SLOPES
     float bent = 0.0, own = 1.0; // what rises as the surface itself does is open
 $end
@@ -140,7 +140,8 @@ $end
         }
         vec3 r = 2.0 * facing * n - l;
         float gleam = max(-dot(r, direction), 0.0);
-        if (gleam > 0.0) gleam = look.specular_intensity * pow(gleam, m.exponent);
+        float exponent = m.exponent * even / (even + m.exponent * (1.0 - even));
+        if (gleam > 0.0) gleam = look.specular_intensity * (1.0 + exponent) / (1.0 + m.exponent) * pow(gleam, exponent);
         color += seen * light.color * (facing * m.diffuse + gleam * m.specular);
     }
     return color;

@@ -107,6 +107,28 @@ TEST_CASE("edges show the faces beside them, and nothing else") {
     }
 }
 
+TEST_CASE("an edge has no highlight that neither of its faces has") {
+    // brighter by 25 than all eight pixels round it, in each channel
+    int dots = 0;
+    for (int i = 0; i < 12; ++i) {
+        const cpu::Picture picture =
+            drawn("gdf_truncated_octahedron(0.75).rotate_euler([10deg, 25deg, 0]).paint(#2d6a4f)"
+                  ".translate([1, 1.9, 0])\nlight(at: [5, 6, 9], color: #fff2e0)\n"
+                  "camera(at: [0.8, 0.5, 11.6], look_at: [1.12, 2.17, 0], fov: " +
+                  std::to_string(1.5 + 0.1 * i) + "deg)\n");
+        for (int y = 1; y + 1 < height; ++y)
+            for (int x = 1; x + 1 < width; ++x) {
+                int least = 255;
+                for (int k = 0; k < 9; ++k)
+                    for (int c = 0; k != 4 && c < 3; ++c)
+                        least = std::min(least, byte(picture, x, y, c) -
+                                                    byte(picture, x + k % 3 - 1, y + k / 3 - 1, c));
+                dots += least > 25;
+            }
+    }
+    CHECK(dots <= 1);
+}
+
 TEST_CASE("a ground without an end fades into the background, without a step") {
     const cpu::Picture picture = drawn("box(1)\nplane(Y, -0.5).paint(#6f7a63)\nbackground(white)\n"
                                        "camera(at: [2, 1, 6], look_at: [0, 0.98, 0], fov: 1deg)\n");

@@ -102,6 +102,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
                                "USUAL_EXTENT",
                                "FLOAT_SLACK",
                                "NORMAL_SLACK",
+                               "FLAT_FROM",
                                "MIN_SLOPE",
                                "RELAXATION",
                                "FLATTEST",
