@@ -274,7 +274,7 @@ Frame frame_of(std::string_view name, const Values &values) {
     if (name == "surface_tap")
         return {marched +
                     "void tap(int i, float f, vec3 e, float h) {\n    vec3 g = vec3(0.0), n = "
-                    "g;\n    float slope = 0.0, bent = 0.0, own = 1.0;\n",
+                    "g;\n    float slope = 0.0, bent = 0.0, own = 1.0, even = 1.0;\n",
                 "}\n" + end};
     if (name == "probe")
         return {version + inputs.substr(inputs.find("uniform")) + cells + cache + expanded("march"),
