@@ -176,8 +176,8 @@
 // OCCLUSION (thesis, 4.2.1: five samples along the normal)
 //   for i = 1..5, x_i = reach*i/5 (Lighting's, else Frame's), c_i = p + x_i*n, g_i = g(c_i), w_i =
 //   2^-i
-//   closed_i = clamp(1 - d_i/x_i, 0, 1), where d_i is how far off the solid is: g_i itself where
-//   the field is the distance (`Frame::exact`) or below 0. Else x_i, if g_i >= nearly*own_i*x_i,
+//   closed_i = clamp(1 - d_i/(nearly*x_i), 0, 1), where d_i is how far off the solid is: g_i itself
+//   where the field is the distance (`Frame::exact`) or below 0. Else x_i, if g_i >= nearly*own_i*x_i,
 //   own_i the greatest of the slope at p and g_j/x_j up to j = i (1 with `Frame::unit_slope`): what
 //   rises as the surface itself does is open, however steep its field is. Else what is NEAREST to
 //   c_i from there on, with fine = max(h, occlusion_fine*x_i/w_i) and the slack at t.
@@ -254,7 +254,7 @@ inline constexpr int descent_steps = 8;             // to the surface
 inline constexpr float descent_apart =
     1.0f / 64; // the square of a sine: two faces that are not one
 inline constexpr int most_slides = 6, occlusion_slides = 1; // along it
-inline constexpr float near_enough = 1.1f;                  // times what the field said first
+inline constexpr float near_enough = 1.01f;                 // times what the field said first
 inline constexpr float steady =
     0.5f; // of the slope: where a gradient is shorter it has no direction
 inline constexpr float least_share = 1.0f / 20;    // of a slide that is tried

@@ -115,7 +115,7 @@ std::vector<float> find_occlusion(Worker &worker, const Points &at) {
     for (std::size_t i = 0; i < looks; ++i) {
         weight *= 0.5f;
         total += weight;
-        const float away = gap * static_cast<float>(i + 1);
+        const float away = gap * static_cast<float>(i + 1), free = shading::nearly * away;
         for (std::size_t k = 0; k < at.size(); ++k) {
             worker.points.set(0, k, at.p[k] + away * at.n[k]);
             worker.limits[k] = away;
@@ -128,20 +128,20 @@ std::vector<float> find_occlusion(Worker &worker, const Points &at) {
         for (std::size_t k = 0; k < at.size(); ++k) {
             const float g = worker.values[k];
             if (stage.frame.exact || g < 0) {
-                sum[k] += weight * clamp(1.0f - g / away, 0.0f, 1.0f);
+                sum[k] += weight * clamp(1.0f - g / free, 0.0f, 1.0f);
                 continue;
             }
             if (!stage.frame.unit_slope) own[k] = std::max(own[k], g / away);
-            if (g >= shading::nearly * own[k] * away) continue;
+            if (g >= own[k] * free) continue;
             const Vec from = at.p[k] + away * at.n[k];
             of.push_back(k);
             places.push_back({from, g, from, Vec(0), 0, 0, 0,
                               std::max(at.h[k], shading::occlusion_fine / weight * away),
-                              0.25f * lengths.slack_at(at.t[k]), away});
+                              0.25f * lengths.slack_at(at.t[k]), free});
         }
         const std::vector<float> found = find_nearest(worker, places);
         for (std::size_t j = 0; j < of.size(); ++j)
-            sum[of[j]] += weight * clamp(1.0f - found[j] / away, 0.0f, 1.0f);
+            sum[of[j]] += weight * clamp(1.0f - found[j] / free, 0.0f, 1.0f);
     }
     for (float &s : sum) s /= total;
     return sum;

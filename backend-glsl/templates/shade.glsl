@@ -40,7 +40,7 @@ $end
 $if !SKIP_SHADING
     for (int i = $ZERO + done; i < taps$AND_PRESENT; ++i) {
         bool outward = i >= $SURFACE_TAPS;
-        float away = reach * float(i - $SURFACE_TAPS + 1);
+        float away = reach * float(i - $SURFACE_TAPS + 1), free = $NEARLY * away;
         vec3 e = fathom_corner(i & 3) * float(i < 4);
         vec3 place = outward ? p + away * n : above + h * e;
         float f = $SHADED(place);
@@ -52,19 +52,19 @@ $include surface_tap
 $if !EXACT
 $if MANY_SLOPES
         own = max(own, f / away);
-        if (f >= $NEARLY * own * away) continue;
+        if (f >= own * free) continue;
 $else
-        if (f >= $NEARLY * away) continue;
+        if (f >= free) continue;
 $end
         int looks = 0;
         if (f >= 0.0)
             f = fathom_nearest(place, vec3(0.0), place, f, 0.0, 0.0, 0.0, max(h, $OCCLUSION_FINE / weight * away),
-                               0.25 * fathom_slack_at(t), away, looks);
+                               0.25 * fathom_slack_at(t), free, looks);
 $if PASSES
         fathom_taken += looks;
 $end
 $end
-        open -= weight * clamp(1.0 - f / away, 0.0, 1.0);
+        open -= weight * clamp(1.0 - f / free, 0.0, 1.0);
     }
 $end
 $if LOCAL_NORMALS

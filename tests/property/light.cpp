@@ -66,6 +66,25 @@ TEST_CASE("what closes a place is as near as the solid is, not as a field says")
     }
 }
 
+TEST_CASE("wide occlusion has no contour lines where a field is no distance") {
+    const std::string look =
+        "camera(at: [1.2, -0.5, 1.4], look_at: [0, -0.8, 0], fov: 55deg)\n"
+        "sun(direction: [-0.4, 1.0, -0.7])\nlighting(ambient_occlusion: 1, occlusion_reach: 0.5)\n"
+        "sphere(0.5).translate([0, -0.45, 0])\n";
+    const std::string parts = "cylinder(0.15, 1).translate([-0.7, -0.5, 0.4])\n",
+                      walls = "box([4, 0.1, 4]).translate(y: -0.95)\n"
+                              "box([0.1, 2, 4]).translate([-1.5, 0, 0])\n"
+                              "box([4, 2, 0.1]).translate([0, 0, -1.5])";
+    const std::pair<std::string, std::string> pairs[] = {
+        {parts + "implicit(p => 0.7 * (p.y + 1))\n", parts + "plane(Y, -1)\n"},
+        {"smooth_union(0.0001) {\n" + walls + "\n}\n", walls + "\n"},
+    };
+    for (const auto &[field, exact] : pairs) {
+        INFO(field);
+        CHECK(different(drawn(look + field), drawn(look + exact)) <= 5 * few);
+    }
+}
+
 TEST_CASE("what stands on a ground has no dots along its foot") {
     const std::string scene = "plane(Y, -0.5).paint(#c8c0b0)\n"
                               "camera(at: [1.5, 0.3, 4], look_at: [0.5, -0.2, 0], fov: 35deg)\n";
