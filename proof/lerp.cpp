@@ -1,4 +1,5 @@
 // The rule for a blend by a weight, t a + (1 - t) b. Proofs: docs/lipschitz.md, 3.
+#include "proof/gap.h"
 #include "proof/prover.h"
 
 #include <algorithm>
@@ -58,28 +59,41 @@ Box Prover::varying_box(NodeId weight, const Box &within) {
     return box;
 }
 
-// The most by which two exact fields differ; infinity where they are none, or without bounds. The
-// difference is greatest inside one of the solids A and B: outside both, |a - b| is at most their
-// Hausdorff distance, which is a difference at a point of A or B. What is nowhere has a number in
-// place of a distance, and a fold may leave a field less than the way to the point it falls towards.
-double Prover::gap_of_exact(ShapeId id) {
+// The most by which the two fields differ; infinity where that is not known, or endless. As their
+// expressions say; or, of exact fields, where one of them is 0, or they have not the same sign. What is
+// nowhere has a number in place of a distance, and a fold may leave a field less than the way to the
+// point it falls towards: that is added. `enough`: a gap than which none need be less.
+double Prover::gap_of(ShapeId id, double enough) {
     const Shape shape = scene.shapes[id];
     const Derived &a = child(shape, 0), &b = child(shape, 1);
+    const auto f = expression(shape.children[0]), g = expression(shape.children[1]);
+    double gap = infinity;
+    if (f && g) gap = bound_difference(flattening, ranges, *f, *g, to_cell(place(id).box));
     const Box common = ir::hull(a.fact.bounds, b.fact.bounds);
     const bool nowhere = a.fact.bounds.empty() || b.fact.bounds.empty();
-    if (!a.fact.exact_outside || !b.fact.exact_outside || !common.finite() || nowhere)
-        return infinity;
-    const double less = up(a.short_by + b.short_by);
+    if (gap <= enough || !a.fact.exact_outside || !b.fact.exact_outside || !common.finite() ||
+        nowhere)
+        return gap;
+    const double less = a.short_by + b.short_by;
     // of the box that holds both: outside both fields lie in [d, d + D], inside above -D/2
     double diagonal = 0;
     for (std::size_t i = 0; i < 3; ++i) diagonal += std::pow(common.hi[i] - common.lo[i], 2);
-    const double gap = up(1.5 * std::sqrt(diagonal) + a.lowered + b.lowered + less, 4);
-    const auto f = expression(shape.children[0]), g = expression(shape.children[1]);
+    gap = std::min(gap, up(1.5 * std::sqrt(diagonal) + a.lowered + b.lowered + less, 4));
     if (!f || !g) return gap;
     Budget budget;
-    budget.instructions = options.field_instructions / 4;
-    return std::min(gap, up(less + bound_magnitude(flattening, ranges, graph.sub(*f, *g),
-                                                   {to_cell(common), nullptr}, budget)));
+    budget.enough = enough;
+    const double steepest = std::max(a.fact.lipschitz_sup, b.fact.lipschitz_sup);
+    if (a.lowered > 0 || b.lowered > 0 || less > 0 || steepest > 1) {
+        budget.instructions = options.field_instructions / 4;
+        return std::min(gap, up(less + bound_magnitude(flattening, ranges, graph.sub(*f, *g),
+                                                       {to_cell(common), nullptr}, budget)));
+    }
+    const bool inside = a.fact.kind == FieldKind::Exact && b.fact.kind == FieldKind::Exact;
+    gap = std::min(gap, bound_difference(flattening, ranges, *f, *g, to_cell(common)));
+    if (gap <= enough) return gap;
+    budget.instructions = 4 * options.field_instructions;
+    budget.hopeless = 0.95 * gap;
+    return std::min(gap, bound_gap(flattening, ranges, *f, *g, inside, to_cell(common), budget));
 }
 
 Derived Prover::know_lerp(ShapeId id) {
@@ -111,7 +125,10 @@ Derived Prover::know_lerp(ShapeId id) {
     if (varies && std::isfinite(weight.lipschitz) && weight.lipschitz > 0) {
         // |grad| <= the mean's + |grad t| * |a - b|, where t varies.
         const Box box = varying_box(t, place(id).box);
-        double gap = gap_of_exact(id);
+        // a gap that adds no more than that is not worth more work
+        constexpr double flat = 0.01;
+        double gap =
+            gap_of(id, std::isfinite(sup) ? flat * std::max(sup, 1.0) / weight.lipschitz : 0);
         if (box.finite() && !box.empty())
             gap = std::min(
                 gap, up(magnitude(shape.children[0], box) + magnitude(shape.children[1], box)));

@@ -135,7 +135,8 @@ Derived Prover::know_scale(ShapeId id, Derived k) {
         least = std::min(least, by[i].mignitude());
     }
     if (flat) by[2] = 1.0;
-    k.lowered = up(k.lowered * most), k.short_by = up(k.short_by * most);
+    if (k.lowered > 0) k.lowered = up(k.lowered * most);
+    if (k.short_by > 0) k.short_by = up(k.short_by * most);
     k.fact.bounds = times(k.fact.bounds, by);
     k.fact.bounded = times(k.fact.bounded, by);
     k.outer = everywhere(k.outer) ? k.outer : times(k.outer, by);
@@ -180,7 +181,7 @@ Derived Prover::know_fold(ShapeId id, Derived k) {
     k.parts_exact = false;
     const auto flat = fold_is_clean(shape.args[0], child(shape).fact.bounds);
     k.fact.exact_outside = k.fact.exact_outside && flat;
-    k.short_by = up(k.short_by + flat.value_or(0));
+    if (flat && *flat > 0) k.short_by = up(k.short_by + *flat);
     k.fact.symmetric = fold_symmetry(shape.args[0], k.fact.symmetric);
     k.fact.moment_arm = {infinity, infinity, infinity};
     cap_moment_arms(k);

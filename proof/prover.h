@@ -95,7 +95,7 @@ struct Prover {
     Steepness join_bounds(const ir::Shape &shape, Steepness so_far, const Derived &next);
     Derived know_lerp(ir::ShapeId id);
     Box varying_box(ir::NodeId weight, const Box &within); // lerp.cpp
-    double gap_of_exact(ir::ShapeId id);
+    double gap_of(ir::ShapeId id, double enough);
     Derived know_displaced(ir::ShapeId id); // displace, offset, shell
     Derived know_extrude(ir::ShapeId id);
     Derived know_map(ir::ShapeId id);

@@ -11,7 +11,7 @@
 namespace fathom::proof {
 
 // What is wanted of a field; it stands in the words.
-enum class Wanted : std::uint8_t { Bound, Deformed, Magnitude };
+enum class Wanted : std::uint8_t { Bound, Deformed, Magnitude, Gap, GapInside };
 
 class Question {
   public:

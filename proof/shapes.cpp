@@ -271,7 +271,7 @@ Derived Prover::know_displaced(ShapeId id) {
         k.fact.bounds = reached(k.fact.bounds, k.growth_rate, amount.hi);
         k.outer = reached(k.outer, k.outer_growth_rate, -amount.lo);
         differ_by(k, amount.magnitude());
-        k.lowered = up(k.lowered + std::max(-amount.lo, 0.0));
+        if (amount.lo < 0) k.lowered = up(k.lowered - amount.lo);
         k.fact.exact_outside = k.fact.exact_outside && !varies;
         // What moves inward only is still below the child's field: the shell begins at the surface
         // itself.
