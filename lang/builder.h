@@ -277,6 +277,7 @@ class Builder {
     bool range_of_param(Index comma);
     void foreign_name_parts(Index left, Index right);
     bool is_used_after(Index name) const;
+    bool arguments_by_space(Index first);
     void foreign_curried(Index first, Index name, Index past);
     void foreign_function(Index first, Index name, bool has_type);
     bool is_assigned_after(Index name) const;
@@ -328,6 +329,10 @@ class Builder {
     std::string spaced_atom(Index &at, Index past, bool &apart) const;
     std::string spaced_call(Index &at, Index past, bool &apart) const;
     std::string spaced_value(Index first, Index past, bool &apart) const;
+    bool foreign_parameter(Index at);
+    bool sentence(Index first, Index past);
+    bool word_of_sentence(Index at);
+    bool parted_by_semicolon(Index at, Index open);
     bool spaced_statement(Index at);
     bool holds_comma(Index open) const;
 
@@ -356,6 +361,8 @@ class Builder {
     bool foreign_comparison(Index at);
     bool foreign_scope(Index colon);
     bool foreign_percent(Index at);
+    bool is_amount_of_vector(Index bar) const;
+    bool set_of_points(Index brace);
     bool missing_operand(Index at);
     bool runs_on(Index name, std::uint32_t end);
     bool wanted_at_start(Index at) const;

@@ -382,6 +382,12 @@ void Builder::replace_bad_statement(Index first) {
     const bool declares = kind(first) != Tok::Name || behind == Tok::Assign ||
                           (name > first && behind == Tok::Open && has_body(name) &&
                            text(name - 1) != "default"); // JavaScript's export
+    const bool head = kind(first) == Tok::Name && name == first && behind == Tok::Open &&
+                      kind(match(name + 1) + 1) == Tok::Assign; // `f(x) = …`
+    if (head && !is_declared(std::string(text(name)))) {
+        declare_poison(name);
+        return;
+    }
     const auto is_lost = [&](Index i) { return text(i) == text(name); };
     if (std::ranges::any_of(lost, is_lost)) {
         add_stmt(Bad{}, whole, 1);

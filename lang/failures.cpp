@@ -106,7 +106,7 @@ std::vector<Edit> Builder::call_of_list(Index open) const {
 void Builder::generic_failure(Wanted wanted, Index at) {
     const Tok found = kind(at);
     const bool exists = at < tokens_.tokens.size();
-    if (exists && found == Tok::StrayBrace && foreign_record(at)) return;
+    if (exists && found == Tok::StrayBrace && (foreign_record(at) || set_of_points(at))) return;
     if (exists && found == Tok::StrayBrace) {
         Diagnostic &d = diagnostics_.add(Code::SyntaxError, span(at), "a block cannot stand here")
                             .note("`{` opens a block behind a callee, a header, a function's head "
@@ -147,7 +147,15 @@ void Builder::generic_failure(Wanted wanted, Index at) {
         d.label(span(enclosing(at)), "opened here");
         if (found == Tok::Name && kind(at - 1) == Tok::Number && kind(at + 1) != Tok::Colon &&
             kind(at + 1) != Tok::Assign) {
-            d.help("a comma or a `*` is missing before it");
+            const std::uint32_t end = token(at - 1).end;
+            const bool product =
+                at > 1 && // `2 + 3 sin(x)`
+                is_one_of(kind(at - 2), {Tok::Plus, Tok::Minus, Tok::Star, Tok::Slash, Tok::Caret,
+                                         Tok::FatArrow, Tok::Less, Tok::Greater});
+            if (product)
+                d.help("to multiply, write `*`", {{{id_, end, end}, " *"}});
+            else
+                d.help("a comma or a `*` is missing before it");
         } else if (begins_operand(found) && wanted != Wanted::CloseBrace) {
             const std::uint32_t end = token(at - 1).end;
             d.help("a comma may be missing", {{{id_, end, end}, ","}});

@@ -171,7 +171,7 @@ bool Builder::foreign_loop(Index at) {
         if (text(i) == "..<") diagnostics_.withdraw(Code::ForeignSyntax, span(i));
     Diagnostic &d = foreign(span(at - 1, close), "a loop is written `for i in 0..8 { … }`");
     const auto propose = [&](const std::string &head) {
-        std::vector<Edit> edits{{span(at, close), head}};
+        std::vector<Edit> edits{{span(at, close), (touch(at - 1, at) ? " " : "") + head}};
         const auto inner = std::ranges::count(head, '{'); // loops within the first
         std::string closed = " }";
         for (auto n = inner; n > 0; --n) closed += " }";
@@ -265,35 +265,6 @@ bool Builder::foreign_loop(Index at) {
 
 // -- where a statement should have ended ---------------------------------------------------------
 
-// A line of words, as `-- a remark`, `; a remark`: no statement.
-bool Builder::remark(Index first, Index at) {
-    Index words = first;
-    while (kind(words) == Tok::Minus) ++words;
-    const Index begin = words;
-    while (is_one_of(kind(words), {Tok::Name, Tok::In, Tok::And, Tok::Or, Tok::Not, Tok::For}))
-        ++words;
-    if (at >= 3 && kind(at - 1) == Tok::Name && kind(at - 2) == Tok::Minus &&
-        kind(at - 3) == Tok::Minus && touch(at - 3, at - 2) && kind(at) == Tok::Name &&
-        at - 3 > first) { // `sphere(1) -- a remark`
-        foreign(span(at - 3, at - 2), "a comment begins with `//`")
-            .help("write `//`", {{span(at - 3, at - 2), "//"}});
-        return true;
-    }
-    const bool dashes = begin == first + 2 && touch(first, first + 1);
-    const Index count = words - begin;
-    const bool lisp = first > 0 && kind(first - 1) == Tok::End && text(first - 1) == ";" &&
-                      !token(first).first_on_line;
-    if (!ends_statement(words) || at > words || at < begin || count < (dashes ? 2u : 3u) ||
-        (begin > first && !dashes) || kind(begin) != Tok::Name)
-        return false;
-    const Span sign = dashes ? span(first, first + 1)
-                      : lisp ? span(first - 1)
-                             : Span{id_, token(first).begin, token(first).begin};
-    foreign(span(lisp ? first - 1 : first, words - 1), "a comment begins with `//`")
-        .help("write `//`", {{sign, dashes || lisp ? "//" : "// "}});
-    return true;
-}
-
 // `sphere(r) where r = 2`, at the word.
 bool Builder::where_clause(Index first, Index at) {
     if (kind(at) != Tok::Name || text(at) != "where" || kind(at + 1) != Tok::Name ||
@@ -370,7 +341,9 @@ bool Builder::foreign_junk(Index first, Index at) {
             .help("write `// …`", std::move(edits));
         return true;
     }
-    if (found == Tok::In && is_one_of(kind(first), {Tok::Let, Tok::Fn, Tok::Param})) {
+    const bool binds = is_one_of(kind(first), {Tok::Let, Tok::Fn, Tok::Param}) ||
+                       (kind(first) == Tok::Name && kind(first + 1) == Tok::Assign);
+    if (found == Tok::In && binds) { // Curv's `let s = sphere 1 in union [s, …]`
         foreign(span(at), "a name is known to the end of its block, without `in`")
             .help("end the statement, with a line's end or `;`",
                   {{{id_, token(at - 1).end, token(at).end}, ";"}});
@@ -490,7 +463,7 @@ bool Builder::junk_by_sign(Index first, Index at) {
         return true;
     }
     if (found != Tok::In) return false;
-    foreign(span(at), "there is no operator `in`");
+    foreign(span(at), "there is no operator `in`").help("compare with each: `n == 1 or n == 2`");
     return true;
 }
 

@@ -201,6 +201,14 @@ bool Builder::foreign_stream(Index first, Index name) {
 
 // `let [a, b] = …`, `a, b = …`: the names stand from `from` to before `past`.
 void Builder::destructuring(Index first, Index from, Index past, Index assign) {
+    constexpr std::array<std::string_view, 4> modules = {"Math", "math", "THREE", "np"};
+    if (kind(assign + 1) == Tok::Name && is_one_of(text(assign + 1), modules) &&
+        ends_statement(assign + 2) && !may_be_declared(text(assign + 1))) {
+        const bool sign = kind(assign + 2) == Tok::End && text(assign + 2) == ";";
+        foreign(span(first, assign + 1), "the mathematical functions need no module")
+            .help("leave the line away", {{span(first, assign + (sign ? 2 : 1)), ""}});
+        return;
+    }
     std::vector<Index> names;
     bool plain = true;
     for (Index i = from; i < past; ++i) {
@@ -356,6 +364,7 @@ bool Builder::foreign_head(Index first) {
     const bool of_type = name == first + 1 && word[0] >= 'A' && word[0] <= 'Z'; // `Shape s = …`
     const bool curried = !typed && !of_type && !is_one_of(word, qualifiers) &&
                          !is_type_word(word) && !is_one_of(word, function_words);
+    if (value && curried && arguments_by_space(first)) return true;
     if (value && curried) {
         foreign_curried(first, first, name + 1);
         return true;

@@ -137,9 +137,13 @@ bool Builder::foreign_group(Index at, bool list) {
     if (found == Tok::Colon && kind(at + 1) == Tok::Name && touch(at, at + 1) && !list &&
         !touch(at - 1, at) && lisp_call(at))
         return true;
-    if (foreign_word_operator(at) || foreign_comparison(at) || foreign_scope(at)) return true;
+    if (foreign_word_operator(at) || foreign_comparison(at) || foreign_scope(at) ||
+        bars_of_amount(at))
+        return true;
     const Index open = enclosing(at);
     const bool head = open >= 2 && kind(open - 2) == Tok::Fn;
+    if (head && is_one_of(kind(before), {Tok::Open, Tok::Comma}) && foreign_parameter(at))
+        return true;
     if (head && found == Tok::In && kind(at + 1) == Tok::Name && kind(at + 2) == Tok::Name) {
         changed_parameter(at, at + 1); // `in vec3 p`
         return true;
@@ -195,10 +199,8 @@ bool Builder::foreign_group(Index at, bool list) {
     if (grouping && foreign_product(at)) return true;
     if (!list && found == Tok::Assign && (grouping || kind(open) == Tok::FreshOpen))
         return foreign_instead(at, "a comparison is written `==`", "==");
-    if (!list && found == Tok::End && text(at) == ";" && !ends_statement(at + 1)) {
-        foreign(span(at), "arguments are parted by commas").help("write `,`", {{span(at), ","}});
-        return true;
-    }
+    if (!list && found == Tok::End && text(at) == ";" && !ends_statement(at + 1))
+        return parted_by_semicolon(at, open);
     if (grouping && found == Tok::Comma) { // a tuple
         const Index close = match(open);
         foreign(span(open), "a vector or a list stands in brackets")
@@ -485,7 +487,7 @@ bool Builder::foreign_failure(Wanted wanted, Index at) {
             .help("write the type alone, or leave it away",
                   {{span(at - 2, at + 1), std::string(text(at))}});
         return true;
-    case Wanted::ParameterName:
+    case Wanted::ParameterName: return foreign_parameter(at);
     case Wanted::TypeEnd:
     case Wanted::Arrow:
     case Wanted::TernaryColon:

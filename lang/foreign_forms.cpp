@@ -401,7 +401,7 @@ class Forms : WordChanges {
                 words_[i].begin, words_[i].end, words_[i].first_on_line);
             return true;
         }
-        if (before(i) != Tok::Assign) return false;
+        if (!is_one_of(before(i), {Tok::Assign, Tok::In})) return false;
         std::size_t open = i;
         if (kind(i) == Tok::Name && is_type_word(text(i)) && kind(i + 1) == Tok::ListOpen) {
             open = kind(i + 2) == Tok::ListClose ? i + 3 : i + 4;
@@ -459,6 +459,7 @@ class Forms : WordChanges {
         }
         const bool sign = kind(i) == Tok::Star || (kind(i) == Tok::DotDot && text(i) == "...");
         if (!sign || before(i) != Tok::Open || i < 2 || kind(i - 2) != Tok::Name ||
+            !touch(i - 2, i - 1) || // `y (* tau 0.1)`, of a Lisp
             !is_one_of(kind(i + 1), {Tok::Name, Tok::ListOpen}) || words_[i].first_on_line)
             return false;
         const std::size_t close = close_of(i - 1, longest_list);

@@ -201,6 +201,17 @@ class Lambdas : WordChanges {
         return true;
     }
 
+    // Whether behind this bar an expression goes on or ends, as in `|p| - 1`: an amount. A sign that
+    // touches only what is behind it begins a body: `|x| -x`, `|x| *x`.
+    bool no_body_follows(std::size_t bar) const {
+        const std::size_t next = bar + 1;
+        const bool prefix = is_one_of(kind(next), {Tok::Minus, Tok::Star}) &&
+                            touch(next, next + 1) && !touch(bar, next);
+        return !prefix &&
+               is_one_of(kind(next), {Tok::Minus, Tok::Plus, Tok::Star, Tok::Slash, Tok::Caret,
+                                      Tok::Less, Tok::Greater, Tok::Close, Tok::Comma, Tok::End});
+    }
+
     // `|x, y| …`, where no operator can stand.
     bool by_bars(std::size_t &i) {
         if (kind(i) != Tok::Bar || !is_operand_place(before(i)) || words_[i].first_on_line)
@@ -212,7 +223,7 @@ class Lambdas : WordChanges {
             if (kind(k) != Tok::Comma) break;
             ++k;
         }
-        if (kind(k) != Tok::Bar || k == i + 1) return false;
+        if (kind(k) != Tok::Bar || k == i + 1 || no_body_follows(k)) return false;
         begin_change(i);
         const std::uint32_t begin = words_[i].begin, end = words_[k].end;
         const std::string inside = text(words_[i].end, words_[k].begin);

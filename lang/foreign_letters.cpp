@@ -83,6 +83,7 @@ std::string encode(std::uint32_t c) {
 // A name with such letters that begins here: its end, or 0.
 std::uint32_t Lexer::name_with_letters(std::uint32_t begin) {
     if (!beyond_ascii_) return 0;
+    if (const std::uint32_t past = sum_sign(begin); past > 0) return past;
     const std::string_view all = source_.text;
     bool letters = false;
     std::uint32_t end = begin;
@@ -97,15 +98,7 @@ std::uint32_t Lexer::name_with_letters(std::uint32_t begin) {
     const std::string_view name = all.substr(begin, end - begin);
     if (!letters || name == "π") return 0; // that is ours: `pi`
     add(Tok::Name, begin, end);
-    constexpr std::size_t most_edits = 40;
-    const auto [told, fresh] = told_names_.try_emplace(name, ToldName{span(begin, end)});
-    if (!fresh) { // one cause, one report
-        if (++told->second.uses > most_edits) return end;
-        Diagnostic *first = diagnostics_.find(Code::BadCharacter, told->second.first);
-        if (first && first->fix && !first->fix->edits.empty())
-            first->fix->edits.push_back({span(begin, end), first->fix->edits[0].replacement});
-        return end;
-    }
+    if (told_before(begin, end, {})) return end; // one cause, one report
     Diagnostic &d = report(Code::BadCharacter, begin, end,
                            "names use the letters a to z, A to Z, digits and `_`");
     std::string ours = plain_spelling(name);
@@ -116,31 +109,6 @@ std::uint32_t Lexer::name_with_letters(std::uint32_t begin) {
         d.help("write `" + ours + "`", {{span(begin, end), ours}});
     d.note("comments and strings may hold any letters");
     return end;
-}
-
-// `[1, 0, 0] × [0, 1, 0]`, `u · v`: the sign is that of numbers too, and so only of what stands in
-// brackets it is known which product is meant.
-bool Lexer::product_of_vectors(std::uint32_t begin, std::uint32_t end, bool cross, Diagnostic &d) {
-    const std::string_view all = source_.text;
-    const std::string call = cross ? "cross(a, b)" : "dot(a, b)";
-    const std::size_t left = begin == 0 ? all.npos : all.find_last_not_of(" \t", begin - 1);
-    const std::size_t right = all.find_first_not_of(" \t", end);
-    if (left == all.npos || right == all.npos) return false;
-    const std::size_t open = all[left] == ']' ? all.rfind('[', left) : all.npos;
-    const std::size_t close = all[right] == '[' ? all.find(']', right) : all.npos;
-    if (open == all.npos && close == all.npos) {
-        d.note("of vectors it is `" + call + "`");
-        return false;
-    }
-    std::vector<Edit> edits;
-    if (open != all.npos && close != all.npos) {
-        const auto at = [](std::size_t i) { return static_cast<std::uint32_t>(i); };
-        edits = {{span(at(open), at(open)), cross ? "cross(" : "dot("},
-                 {span(at(left + 1), at(right)), ", "},
-                 {span(at(close + 1), at(close + 1)), ")"}};
-    }
-    d.help("a product of vectors is `" + call + "`", std::move(edits));
-    return true;
 }
 
 // Letters of any script, and what mathematics writes behind one; no signs and no spaces.

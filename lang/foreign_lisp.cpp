@@ -203,11 +203,13 @@ bool Builder::lisp_binding(Index open) {
     return true;
 }
 
-// `(let [r 2] (sphere r))`, at its bracket: names, and then what uses them.
+// `(let [r 2] (sphere r))`, `(let ((r 2)) (sphere r))`, at its bracket: names, and then what uses them.
 bool Builder::lisp_let(Index open) {
-    const Index let = open + 1, list = let + 1, close = match(open);
-    if (kind(let) != Tok::Let || !is_one_of(kind(list), {Tok::ListOpen, Tok::FreshListOpen}) ||
-        kind(close) != Tok::Close)
+    const Index let = open + 1, close = match(open);
+    const Index list = let + (kind(let + 1) == Tok::Star && touch(let, let + 1) ? 2 : 1); // `let*`
+    const bool pairs = kind(list) == Tok::Open && kind(list + 1) == Tok::Open; // Scheme's
+    if (kind(let) != Tok::Let || kind(close) != Tok::Close ||
+        (!pairs && !is_one_of(kind(list), {Tok::ListOpen, Tok::FreshListOpen})))
         return false;
     std::string written;
     bool plain = true;
@@ -218,10 +220,13 @@ bool Builder::lisp_let(Index open) {
     };
     Index at = list + 1;
     while (plain && at < match(list)) {
+        const Index end = match(at);
+        if (pairs && end > at) ++at;
         plain = kind(at) == Tok::Name;
         lost_.push_back(at);
         const std::string name(text(at++));
         add("let " + name + " = ", at);
+        if (pairs) plain = plain && at == end, at = end + 1;
     }
     at = match(list) + 1;
     while (plain && at < close) add("", at);

@@ -38,11 +38,6 @@ constexpr WordOperator word_operators[] = {
     {"to", "..=", "a range is written `..=`, or `..` without its end"},
     {"until", "..", "a range is written `..`, or `..=` with its end"}};
 
-bool ends_operand(Tok kind) {
-    return is_one_of(kind, {Tok::Name, Tok::Number, Tok::String, Tok::Color, Tok::True, Tok::False,
-                            Tok::Close, Tok::ListClose});
-}
-
 bool is_binary(Tok kind) {
     return is_one_of(kind, {Tok::Bar, Tok::Amp, Tok::Or, Tok::And, Tok::EqualEqual, Tok::NotEqual,
                             Tok::Less, Tok::LessEqual, Tok::Greater, Tok::GreaterEqual, Tok::DotDot,
@@ -175,24 +170,6 @@ bool Builder::foreign_percent(Index at) {
     const std::string share = format_shortest(*value / 100);
     foreign(span(at - 2, at - 1), "a share is a number, of which 1 is the whole")
         .help("write " + in_code(share), {{span(at - 2, at - 1), share}});
-    return true;
-}
-
-// `|x| - 1`, at the first bar, where no value stands before it.
-bool Builder::bars_of_amount(Index at) {
-    if (kind(at) != Tok::Bar || at == 0) return false;
-    std::vector<Edit> edits;
-    Index i = at;
-    for (bool opens = true; !ends_statement(i); i = match(i) > i ? match(i) + 1 : i + 1) {
-        if (is_one_of(kind(i), {Tok::Close, Tok::ListClose, Tok::Comma, Tok::BraceClose})) break;
-        if (kind(i) != Tok::Bar) continue;
-        if (opens == ends_operand(kind(i - 1))) return false; // a union
-        edits.push_back({span(i), opens ? "abs(" : ")"});
-        opens = !opens;
-    }
-    if (edits.size() < 2 || edits.size() % 2 != 0) return false;
-    foreign(span(at), "an amount is written `abs(x)`, of a vector `length(v)`")
-        .help("write `abs( … )`", std::move(edits));
     return true;
 }
 

@@ -106,7 +106,9 @@ std::string Builder::spaced_atom(Index &at, Index past, bool &apart) const {
         if (!opens_group(kind(at)) && !opens_row(kind(at)) && kind(at) != Tok::Trailing) break;
         const Index end = match(at);
         if (end <= at || end >= past) return {};
-        const bool list = opens_row(kind(at)) && holds_comma(at); // `move[1, 0, 0]`
+        const bool applied = kind(at + 1) == Tok::Name && at + 2 < end && !is_sign(kind(at + 2)) &&
+                             kind(at + 2) != Tok::Dot;                         // `union[sphere 1]`
+        const bool list = opens_row(kind(at)) && (holds_comma(at) || applied); // `move[1, 0, 0]`
         const bool call = !opens_row(kind(at));
         std::string row = spaced_row(at + 1, end, apart);
         if (row.empty() && end > at + 1) return {};
@@ -204,6 +206,7 @@ bool Builder::spaced_statement(Index at) {
     const Index past = statement_end(first);
     if (kind(first) != Tok::Name || at >= past || past > first + longest) return false;
     bool apart = false;
+    if (sentence(first, past)) return true;
     const std::string value = spaced_value(first, past, apart);
     if (value.empty() || !apart) return false;
     failed_ = past;

@@ -4,6 +4,7 @@
 #include "lang/token.h"
 
 #include <algorithm>
+#include <unordered_map>
 #include <utility>
 
 namespace fathom::lang {
@@ -127,7 +128,8 @@ class Layout {
     Edit closing_edit(const Level &open, const Token *instead) const;
     bool else_if_of_other_languages(const Token &t);
     bool ends_with_callee() const;
-    bool transform_waits(const Token &t) const;
+    bool transform_waits(const Token &t);
+    bool has_function(std::string_view name);
     Tok brace_kind();
 
     std::uint32_t indent_of(const Token &t) const {
@@ -157,8 +159,9 @@ class Layout {
     Diagnostics &diagnostics_;
     Tokens out_;
     std::vector<Level> levels_;
-    std::vector<bool> never_closed_; // of the words
-    std::optional<Level> suspect_;   // the first `{` whose `}` stands further left than its line
+    std::vector<bool> never_closed_;                           // of the words
+    std::unordered_map<std::string_view, bool> own_functions_; // of the names that were asked for
+    std::optional<Level> suspect_; // the first `{` whose `}` stands further left than its line
 };
 
 // Whether the line above is `name` or `name(…)`, perhaps behind a `=`: what a block may belong to.
@@ -287,8 +290,8 @@ void Layout::line_begins(const Token &t) {
 }
 
 // Whether the line above is a transform of OpenSCAD without its shape, as `translate([0, 0, 1])`,
-// and this line stands further in.
-bool Layout::transform_waits(const Token &t) const {
+// and this line stands further in, or is a call.
+bool Layout::transform_waits(const Token &t) {
     const std::size_t close = out_.tokens.size() - 1;
     if (t.kind != Tok::Name || out_.tokens[close].kind != Tok::Close) return false;
     const std::size_t open = out_.match[close];
@@ -298,8 +301,22 @@ bool Layout::transform_waits(const Token &t) const {
     const bool method = open > 1 && out_.tokens[open - 2].kind == Tok::Dot; // ours
     const bool theirs = is_one_of(first, {Tok::ListOpen, Tok::Number, Tok::String, Tok::Minus}) ||
                         (first == Tok::Name && out_.tokens[open + 2].kind == Tok::Assign);
-    return name.kind == Tok::Name && theirs && !method &&
-           is_foreign_transform(text_of(source_, name)) && indent_of(t) > indent_of(name);
+    if (name.kind != Tok::Name || !theirs || method ||
+        !is_foreign_transform(text_of(source_, name)))
+        return false;
+    if (indent_of(t) != indent_of(name)) return indent_of(t) > indent_of(name);
+    // on a line of its own above a call: nothing of the library has no shape
+    return name.first_on_line && source_.text[t.end] == '(' &&
+           !has_function(text_of(source_, name));
+}
+
+// Whether the text has a function of its own with that name.
+bool Layout::has_function(std::string_view name) {
+    const auto [it, fresh] = own_functions_.try_emplace(name, false);
+    for (std::size_t i = 0; fresh && i + 1 < words_.size(); ++i)
+        it->second = it->second || (is_one_of(words_[i].kind, {Tok::Fn, Tok::Let}) &&
+                                    text_of(source_, words_[i + 1]) == name);
+    return it->second;
 }
 
 Tok Layout::brace_kind() {
@@ -415,8 +432,8 @@ Tokens lay_out(const Source &source, SourceId id, const Words &words, Diagnostic
     const auto latest = [&]() -> const std::vector<Token> & {
         return ours.tokens.empty() ? words.tokens : ours.tokens;
     };
-    for (const auto pass :
-         {read_foreign_casts, read_foreign_forms, read_foreign_matches, read_foreign_lambdas})
+    for (const auto pass : {read_foreign_blocks, read_foreign_casts, read_foreign_forms,
+                            read_foreign_matches, read_foreign_lambdas})
         if (std::vector<Token> changed = pass(source, id, latest(), diagnostics); !changed.empty())
             ours.tokens = std::move(changed);
     return Layout(source, id, ours.tokens.empty() ? words : ours, diagnostics).run();

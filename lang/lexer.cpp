@@ -99,6 +99,16 @@ void Lexer::add(Tok kind, std::uint32_t begin, std::uint32_t end) {
     fresh_line_ = false;
 }
 
+// A word that takes the place of a sign, with spaces where it would run into another: `a&&b`.
+std::string Lexer::set_apart(std::uint32_t begin, std::uint32_t end, std::string_view ours) const {
+    const std::string_view all = source_.text;
+    std::string out(ours);
+    if (out.empty() || !is_word_char(out[0])) return out;
+    if (begin > 0 && is_word_char(all[begin - 1])) out.insert(0, " ");
+    if (end < all.size() && (is_word_char(all[end]) || all[end] == '(')) out += " ";
+    return out;
+}
+
 Diagnostic &Lexer::foreign(std::uint32_t begin, std::uint32_t end, std::string message,
                            std::string replacement) {
     std::string_view shown = replacement;
@@ -133,6 +143,12 @@ void Lexer::number(std::uint32_t begin, std::uint32_t end) {
     const bool held =
         number && fits_single(number->value) && (number->value == 0 || flushed(number->value) != 0);
     if (held) return add(Tok::Number, begin, end);
+    if (word[0] == '.' && !words_.tokens.empty() && words_.tokens.back().end == begin &&
+        slice(words_.tokens.back().begin, begin).find('_') != std::string_view::npos &&
+        is_digit(source_.text[words_.tokens.back().begin])) { // `1_000.5`: told at the digits
+        words_.tokens.back().end = end;
+        return;
+    }
     add(Tok::Bad, begin, end);
     if (is_digit(word[0]) && number_length(word) == word.size()) {
         report(Code::BadNumber, begin, end,
@@ -303,6 +319,14 @@ void Lexer::sign(std::uint32_t begin, std::uint32_t end) {
             report(Code::ForeignSyntax, begin, end, "the language does not use `!`");
             return;
         }
+        const Tok last = words_.tokens.empty() ? Tok::End : words_.tokens.back().kind;
+        const bool fresh = words_.tokens.empty() || fresh_line_ ||
+                           is_one_of(last, {Tok::End, Tok::Body, Tok::BraceClose});
+        const bool begins = is_one_of(
+            last, {Tok::End, Tok::Body, Tok::BraceClose, Tok::Name, Tok::Number, Tok::ListClose});
+        const char next = end < source_.text.size() ? source_.text[end] : ' ';
+        if (((fresh && begins) || last == Tok::Close) && is_word_char(next))
+            return shown_alone(begin, end); // OpenSCAD's `!cube(1)`
         add(Tok::Not, begin, end);
         foreign(begin, end, "the logical not is a word", "not ");
         return;
@@ -319,41 +343,12 @@ void Lexer::sign(std::uint32_t begin, std::uint32_t end) {
     for (const Sign &sign : long_signs) {
         if (sign.text != text) continue;
         add(sign.kind, begin, end);
-        if (!sign.message.empty())
-            foreign(begin, end, std::string(sign.message), std::string(sign.replacement));
+        if (sign.message.empty()) return;
+        report(Code::ForeignSyntax, begin, end, std::string(sign.message))
+            .help("write " + quoted_code(sign.replacement),
+                  {{span(begin, end), set_apart(begin, end, sign.replacement)}});
         return;
     }
-}
-
-// Signs that typography, other keyboards and mathematics put in the place of ours.
-bool Lexer::strange_sign(std::uint32_t begin, std::uint32_t end, std::uint32_t c) {
-    struct Twin {
-        std::uint32_t code_point;
-        Tok kind;
-        std::string_view ours;
-    };
-    static constexpr Twin twins[] = {
-        {0x2212, Tok::Minus, "-"},         {0x2013, Tok::Minus, "-"},
-        {0x2014, Tok::Minus, "-"},         {0x00D7, Tok::Star, "*"},
-        {0x22C5, Tok::Star, "*"},          {0x00B7, Tok::Star, "*"},
-        {0x00F7, Tok::Slash, "/"},         {0x2264, Tok::LessEqual, "<="},
-        {0x2265, Tok::GreaterEqual, ">="}, {0x2260, Tok::NotEqual, "!="},
-        {0x2192, Tok::Arrow, "->"},        {0x21D2, Tok::FatArrow, "=>"},
-        {0x222A, Tok::Bar, "|"},           {0x2229, Tok::Amp, "&"},
-        {0xFF08, Tok::Open, "("},          {0xFF09, Tok::Close, ")"},
-        {0xFF0C, Tok::Comma, ","},         {0x2026, Tok::DotDot, ".."},
-        {0xFF1B, Tok::End, ";"},           {0xFF1A, Tok::Colon, ":"},
-        {0xFF1D, Tok::Assign, "="},        {0xFF0B, Tok::Plus, "+"}};
-    for (const Twin &twin : twins) {
-        if (twin.code_point != c) continue;
-        add(twin.kind, begin, end);
-        Diagnostic &d =
-            report(Code::BadCharacter, begin, end, "this sign is not one of the language's");
-        if (twin.kind != Tok::Star || !product_of_vectors(begin, end, c == 0xD7, d))
-            d.help("write " + quoted_code(twin.ours), {{span(begin, end), std::string(twin.ours)}});
-        return true;
-    }
-    return false;
 }
 
 // `$fn = 64;`, and `, $fn = 64` among arguments: all of it. Nothing where no `=` follows.
@@ -372,15 +367,6 @@ std::optional<Span> Lexer::assignment_from(std::uint32_t begin, std::uint32_t en
     return span(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
 }
 
-// Powers and roots as they are written here; empty: none of these.
-static std::string power_or_root(std::string_view text) {
-    constexpr std::pair<std::string_view, std::string_view> ours[] = {
-        {"\xC2\xB2", "^2"}, {"\xC2\xB3", "^3"}, {"\xE2\x88\x9A", "sqrt(x)"}};
-    for (const auto &[theirs, written] : ours)
-        if (theirs == text) return std::string(written);
-    return {};
-}
-
 // What OpenSCAD keeps in names of its own.
 static bool is_special(std::string_view name) {
     constexpr std::array<std::string_view, 9> special = {"fn",  "fa",  "fs",  "t",      "vpr",
@@ -392,6 +378,10 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
     if (begin == 0 && slice(begin, end) == "\xEF\xBB\xBF") return; // a byte order mark
     const CodePoint first = decode_utf8(source_.text, begin);
     if (first.valid && begin + first.length == end && strange_sign(begin, end, first.value)) return;
+    const std::uint32_t second = begin + first.length;
+    if (first.valid && first.value >= 0x80 && second < end && // `⌈⌊`, one by one
+        (strange_sign(begin, second, first.value) || sign_of_mathematics(begin, second)))
+        return strange(second, end);
     const std::string_view text = slice(begin, end);
     if (first.valid && invisible_sign(begin, end, first.value)) return;
     if (text == "\xCF\x80") { // π
@@ -400,16 +390,7 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
             .help("write `pi`", {{span(begin, end), "pi"}});
         return;
     }
-    if (const std::string ours = power_or_root(text); !ours.empty()) {
-        add(Tok::Bad, begin, end);
-        Diagnostic &d =
-            report(Code::BadCharacter, begin, end, "this sign is not one of the language's");
-        if (ours.find('(') == ours.npos)
-            d.help("write " + quoted_code(ours), {{span(begin, end), ours}});
-        else
-            d.help("write " + quoted_code(ours));
-        return;
-    }
+    if (sign_of_mathematics(begin, end)) return;
     if (text == "\xC2\xA0") { // a no-break space
         report(Code::BadCharacter, begin, end, "this is a no-break space")
             .help("write an ordinary space", {{span(begin, end), " "}});
@@ -479,8 +460,12 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
                       ? "a parameter is declared by `param r = 1 in 0..2`"
                       : "leave it away: what stands here is neither marked nor decorated");
     } else if (text[0] == '~') {
-        report(Code::BadCharacter, begin, end, "the language does not use `~`")
-            .note("there are no operators on bits; the logical not is `not`");
+        Diagnostic &d = report(Code::BadCharacter, begin, end, "the language does not use `~`")
+                            .note("there are no operators on bits; the logical not is `not`");
+        const std::size_t count = words_.tokens.size();             // the sign itself is the last
+        if (count > 1 && words_.tokens[count - 2].kind == Tok::Amp) // `a & ~b`
+            d.help("what is in `a` and not in the shape `b` is `a - b`",
+                   {{span(words_.tokens[count - 2].begin, begin + 1), "- "}});
     } else {
         report(Code::BadCharacter, begin, end,
                first.value < 0x20 ? "a control character stands here"

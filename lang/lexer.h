@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace fathom::lang {
 
@@ -29,9 +30,11 @@ class Lexer {
     std::uint32_t smart_string(std::uint32_t begin);
     void quoted(std::uint32_t begin, std::uint32_t end);        // 'text'
     std::uint32_t hash(std::uint32_t begin, std::uint32_t end); // the end of what was understood
+    bool lisp_vector(std::uint32_t begin) const;
     std::uint32_t define(std::uint32_t begin, std::uint32_t end);
     void directive(std::uint32_t begin, std::uint32_t end, std::uint32_t line_end);
     void sign(std::uint32_t begin, std::uint32_t end);
+    void shown_alone(std::uint32_t begin, std::uint32_t end);
     void turned_text(std::uint32_t begin, std::uint32_t end);
     bool invisible_sign(std::uint32_t begin, std::uint32_t end, std::uint32_t sign);
     void strange(std::uint32_t begin, std::uint32_t end); // bytes that begin no word
@@ -50,16 +53,24 @@ class Lexer {
     }
     Diagnostic &foreign(std::uint32_t begin, std::uint32_t end, std::string message,
                         std::string replacement);
+    std::string set_apart(std::uint32_t begin, std::uint32_t end, std::string_view ours) const;
     std::optional<Span> assignment_from(std::uint32_t begin, std::uint32_t end) const;
     std::uint32_t name_with_letters(std::uint32_t begin);
     bool strange_sign(std::uint32_t begin, std::uint32_t end, std::uint32_t code_point);
+    // Signs of mathematics (strange_signs.cpp).
+    bool told_before(std::uint32_t begin, std::uint32_t end, const std::vector<Edit> &edits);
+    bool sign_of_mathematics(std::uint32_t begin, std::uint32_t end);
+    void root_sign(std::uint32_t begin, std::uint32_t end);
+    bool paired_sign(std::uint32_t begin, std::uint32_t end);
+    std::uint32_t sum_sign(std::uint32_t begin);
+    void composition_sign(std::uint32_t begin, std::uint32_t end);
 
     const Source &source_;
     SourceId id_;
     Diagnostics &diagnostics_;
     Words words_;
     bool is_named(std::string_view number) const;
-    bool product_of_vectors(std::uint32_t begin, std::uint32_t end, bool cross, Diagnostic &d);
+    bool product_of_rows(std::uint32_t begin, std::uint32_t end, bool cross);
 
     bool fresh_line_ = true;
     const bool beyond_ascii_; // the text has other letters somewhere
@@ -67,8 +78,10 @@ class Lexer {
         Span first;
         std::size_t uses = 0;
     };
-    std::unordered_map<std::string_view, ToldName> told_names_; // with letters that no name has
-    std::uint32_t open_choices_ = 0; // `#if`s whose `#endif` is yet to come
+    // Names with letters that no name has, and signs.
+    std::unordered_map<std::string_view, ToldName> told_names_;
+    std::unordered_set<std::uint32_t> pair_ends_; // signs that close the `‖` before them
+    std::uint32_t open_choices_ = 0;              // `#if`s whose `#endif` is yet to come
 };
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -100,11 +100,29 @@ void Lexer::directive(std::uint32_t begin, std::uint32_t end, std::uint32_t line
     }
 }
 
+// Whether `[0 0 1]` stands there, which libfive has a `#` before: numbers or names without commas.
+bool Lexer::lisp_vector(std::uint32_t begin) const {
+    const std::string_view rest = std::string_view(source_.text).substr(begin);
+    const std::size_t close = std::min(rest.find(']'), rest.size());
+    if (!rest.starts_with('[') || close == rest.size()) return false;
+    const std::string_view inside = rest.substr(1, close - 1);
+    return inside.find(' ') != inside.npos && std::all_of(inside.begin(), inside.end(), [](char c) {
+               return is_word_char(c) ||
+                      std::string_view(" .+-*/()").find(c) != std::string_view::npos;
+           });
+}
+
 std::uint32_t Lexer::hash(std::uint32_t begin, std::uint32_t end) {
     const std::string_view digits = slice(begin + 1, end);
     const bool all_hex = std::all_of(digits.begin(), digits.end(), is_hex);
     if (all_hex && (digits.size() == 3 || digits.size() == 6 || digits.size() == 8)) {
         add(Tok::Color, begin, end);
+        return end;
+    }
+    if (digits.empty() && !fresh_line_ && lisp_vector(end)) {
+        if (!told_before(begin, end, {{span(begin, end), ""}}))
+            report(Code::BadCharacter, begin, end, "a vector is written `[x, y, z]`")
+                .help("leave the `#` away", {{span(begin, end), ""}});
         return end;
     }
     // `# remark` of Python, and `#version`, `#include`: the rest of the line is theirs.

@@ -91,6 +91,11 @@ inline bool is_one_of(Tok kind, std::initializer_list<Tok> some) {
     return std::find(some.begin(), some.end(), kind) != some.end();
 }
 
+inline bool ends_operand(Tok kind) {
+    return is_one_of(kind, {Tok::Name, Tok::Number, Tok::String, Tok::Color, Tok::True, Tok::False,
+                            Tok::Close, Tok::ListClose});
+}
+
 // A word: its kind and its place.
 struct Token {
     Tok kind = Tok::End;
@@ -128,6 +133,10 @@ std::vector<Token> read_foreign_forms(const Source &source, SourceId id,
                                       const std::vector<Token> &words, Diagnostics &diagnostics);
 std::vector<Token> read_foreign_matches(const Source &source, SourceId id,
                                         const std::vector<Token> &words, Diagnostics &diagnostics);
+// Whole statements, as OpenSCAD's `intersection_for`, and brackets that are missing
+// (foreign_blocks.cpp).
+std::vector<Token> read_foreign_blocks(const Source &source, SourceId id,
+                                       const std::vector<Token> &words, Diagnostics &diagnostics);
 // Casts and calls that name a type (foreign_casts.cpp).
 std::vector<Token> read_foreign_casts(const Source &source, SourceId id,
                                       const std::vector<Token> &words, Diagnostics &diagnostics);

@@ -312,6 +312,16 @@ static void read_arguments(Interpreter &ev, const File &ast, const lang::Call &c
     }
 }
 
+// `hull() { … }`: where there is no such function, only that is said, and nothing of its `()`.
+static void leave_empty_parentheses(Interpreter &ev, Span callee) {
+    if (!callee.source || ev.quiet > 0) return;
+    const std::string_view all = ev.sources[callee.source].text;
+    const std::size_t close = all.find(')', callee.end);
+    if (callee.end >= all.size() || all[callee.end] != '(' || close == all.npos) return;
+    ev.diagnostics.withdraw(Code::ForeignSyntax,
+                            {callee.source, callee.end, static_cast<std::uint32_t>(close + 1)});
+}
+
 // For `s.color(red)`, `s.rotateX(a)` and the like, where `s` is a shape.
 static void help_with_method(Diagnostic &d, const lang::Member &member, const File &ast,
                              const lang::Call &call) {
@@ -436,6 +446,7 @@ Value eval_call(Interpreter &ev, const File &ast, lang::ExprId id, const lang::C
     if (auto *n = std::get_if<lang::Name>(&callee.kind);
         n && !look_up(ev, frame, symbol_of(ast, *n))) {
         report_unknown_name(ev, frame, n->text, callee.span, {Use::Called, nullptr, &ast});
+        if (call.trailing) leave_empty_parentheses(ev, callee.span);
         named = poison();
     }
     Value f = named ? *named : eval(ev, ast, call.callee, frame);

@@ -242,6 +242,18 @@ static void leave_module(Interpreter &ev, Span place) {
     ev.diagnostics.withdraw(Code::ForeignSyntax, {place.source, place.begin, end});
 }
 
+// Whether a name that is called may stand in a library of another language, which was told; `near`
+// is a name of ours like it.
+static bool may_be_lost(const Interpreter &ev, const std::string &name, const std::string &near,
+                        Span place) {
+    constexpr std::size_t few_letters = 4; // which are near to many words, as `leg` to `len`
+    if (!near.empty() && (name.size() > few_letters || near[0] != name[0])) return false;
+    return std::ranges::any_of(ev.diagnostics.items(), [&](const Diagnostic &d) {
+        return d.code == Code::ForeignSyntax && d.primary.span.source == place.source &&
+               d.message.starts_with("a library of another language");
+    });
+}
+
 void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place,
                          const Wanted &wanted) {
     if (std::ranges::any_of(name, [](char c) { return (c & 0x80) != 0; })) return; // letters, told
@@ -298,6 +310,13 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string
         d.help(std::move(alone.message), std::move(alone.edits));
     else if (!way.empty())
         d.help(std::string(way), unit_edit(ev, name, place));
+    if (of_user && wanted.use == Use::Called && way.empty() && !d.fix &&
+        may_be_lost(ev, name, near, place)) {
+        d.help(fmt::format("where it was in a library that cannot be read, declare it here: "
+                           "`fn {}() {{ … }}`",
+                           short_name(name)));
+        return;
+    }
     if (!near.empty()) d.help(fmt::format("did you mean `{}`?", near), {{place, near}});
     if (name == "cube" || name == "square")
         d.note(fmt::format("a `{}` has its middle at the origin", near));

@@ -234,8 +234,10 @@ static Value compare(Interpreter &ev, lang::BinaryOp op, const Value &a, const V
         else if (a.kind == ValueKind::None)
             same = true;
         else {
-            report(ev, Code::TypeMismatch, place,
-                   fmt::format("{} cannot be compared", describe(ev, a)));
+            Diagnostic &d = report(ev, Code::TypeMismatch, place,
+                                   fmt::format("{} cannot be compared", describe(ev, a)));
+            if (a.kind == ValueKind::Shape)
+                d.help("to unite shapes, write `a | b`; to cut one out of another, `a - b`");
             return poison();
         }
         return boolean(same == (op == BinaryOp::Equal));

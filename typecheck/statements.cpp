@@ -451,10 +451,22 @@ std::optional<std::vector<Value>> sequence_items(Interpreter &ev, const Value &v
     Diagnostic &d =
         report(ev, Code::TypeMismatch, place,
                fmt::format("a loop runs over a range or a list, this is {}", describe(ev, v)));
-    if (is_scalar(ev, v))
-        d.help("write a range: `0..n`",
-               place.source ? std::vector<Edit>{{{place.source, place.begin, place.begin}, "0.."}}
-                            : std::vector<Edit>{});
+    if (is_scalar(ev, v)) {
+        const std::string_view text = place.source
+                                          ? std::string_view(ev.sources[place.source].text)
+                                                .substr(place.begin, place.end - place.begin)
+                                          : std::string_view();
+        const std::size_t point = text.find('.'); // `0.5`, where `0..5` was meant
+        const bool literal = text.find_first_not_of("0123456789.") == text.npos;
+        std::vector<Edit> edits;
+        if (literal && point != text.npos)
+            edits = {{{place.source, place.begin + std::uint32_t(point),
+                       place.begin + std::uint32_t(point) + 1},
+                      ".."}};
+        else if (place.source)
+            edits = {{{place.source, place.begin, place.begin}, "0.."}};
+        d.help("write a range: `0..n`", std::move(edits));
+    }
     return std::nullopt;
 }
 
