@@ -119,7 +119,7 @@ class Blocks : WordChanges {
         if (is(colon, "as") || kind(colon) == Tok::As) colon += 2;
         if (close == 0 || kind(colon) != Tok::Colon) return false;
         std::size_t last = colon;
-        while (last + 1 < words_.size() &&
+        while (last + 1 < words_.size() && last <= colon + longest_body &&
                (!words_[last + 1].first_on_line || column(last + 1) > column(i)))
             ++last;
         if (last == colon || last > colon + longest_body) return false;

@@ -376,12 +376,14 @@ static bool is_special(std::string_view name) {
 
 void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
     if (begin == 0 && slice(begin, end) == "\xEF\xBB\xBF") return; // a byte order mark
-    const CodePoint first = decode_utf8(source_.text, begin);
+    CodePoint first = decode_utf8(source_.text, begin);
+    while (first.valid && first.value >= 0x80 && begin + first.length < end && // `⌈⌊`, one by one
+           (strange_sign(begin, begin + first.length, first.value) ||
+            sign_of_mathematics(begin, begin + first.length))) {
+        begin += first.length;
+        first = decode_utf8(source_.text, begin);
+    }
     if (first.valid && begin + first.length == end && strange_sign(begin, end, first.value)) return;
-    const std::uint32_t second = begin + first.length;
-    if (first.valid && first.value >= 0x80 && second < end && // `⌈⌊`, one by one
-        (strange_sign(begin, second, first.value) || sign_of_mathematics(begin, second)))
-        return strange(second, end);
     const std::string_view text = slice(begin, end);
     if (first.valid && invisible_sign(begin, end, first.value)) return;
     if (text == "\xCF\x80") { // π

@@ -149,14 +149,16 @@ bool Lexer::paired_sign(std::uint32_t begin, std::uint32_t end) {
         pairs, [&](const Pair &p) { return p.open == sign || p.close == sign; });
     if (pair == std::end(pairs)) return false;
     if (pair_ends_.contains(begin)) return true; // told at the first
-    const std::size_t line = std::min(all.find('\n', end), all.size());
-    std::size_t close = pair->open == sign ? all.find(pair->close, end) : all.npos;
-    for (std::size_t depth = 0, at = end; pair->open != pair->close && at < line; ++at) {
-        if (all.substr(at).starts_with(pair->open)) ++depth; // `⌊⌊x⌋ / 2⌋`
+    constexpr std::size_t farthest = 400;        // bytes
+    const std::string_view near = all.substr(end, farthest);
+    const std::size_t line = end + std::min(near.find('\n'), near.size());
+    std::size_t close = all.npos;
+    for (std::size_t depth = 0, at = end; pair->open == sign && at < line; ++at) {
         if (all.substr(at).starts_with(pair->close) && depth-- == 0) {
             close = at;
             break;
         }
+        if (all.substr(at).starts_with(pair->open)) ++depth; // `⌊⌊x⌋ / 2⌋`
     }
     std::vector<Edit> edits;
     if (close != all.npos && close < line && close > end) {
@@ -223,7 +225,9 @@ void Lexer::shown_alone(std::uint32_t begin, std::uint32_t end) {
     const bool moved = !words_.tokens.empty() && words_.tokens.back().kind == Tok::Close;
     std::size_t past =
         std::min(all.find_first_not_of("_0123456789abcdefghijklmnopqrstuvwxyz", end), all.size());
-    for (std::size_t depth = 0; past < all.size() && all[past] != '\n'; ++past) {
+    constexpr std::size_t farthest = 400; // bytes
+    const std::size_t limit = std::min(all.size(), end + farthest);
+    for (std::size_t depth = 0; past < limit && all[past] != '\n'; ++past) {
         if (all[past] == '(') ++depth;
         if (depth == 0 || (all[past] == ')' && --depth == 0)) break;
     }
