@@ -113,6 +113,10 @@ bool Builder::juxtaposed_calls(Index first, Index at) {
         foreign(span(first, match(first + 1)), "a transform stands behind the shape that it moves");
     if (text(first) == "color" && kind(match(first + 1) - 2) == Tok::Comma)
         d.note("what light passes through is not drawn: the alpha is left away");
+    for (Index i = first; i < shape; ++i)
+        if (text(i) == "angle" && kind(i + 1) == Tok::Assign && text(i + 2) != "360")
+            d.note("`revolve` turns all the way round: cut off what is not wanted, as with "
+                   "`- box([4, 9, 4]).translate([2, 0, 2])`");
     d.help("write " + in_code(moved + "(…)" + chain),
            {{{id_, token(first).begin, token(shape).end}, moved},
             {{id_, token(end - 1).end, token(end - 1).end}, chain}});
