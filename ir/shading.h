@@ -119,7 +119,7 @@
 //     gleam  (1 + e)/(1 + exponent) * max(r.v, 0)^e, r being l mirrored in n. Where the taps lie on both
 //            sides of an edge, n is between the faces, and would show a highlight that neither has;
 //            so it is spread by how much shorter the mean of their normals is (Toksvig 2005):
-//            even = min(|gradient| / slope / flat_from, 1), with the slope of TRUE DISTANCE or 1,
+//            even = |gradient| / slope / flat_from, from min_slope to 1, with the slope of TRUE DISTANCE or 1,
 //            e = exponent * even/(even + exponent*(1 - even)); the exponent itself on what is flat
 //     seen  1 - shadow_darkness * (1 - shadow)
 //     ao    1 - ambient_occlusion * occlusion

@@ -21,7 +21,7 @@ constexpr int range_pieces = 8;      // of a range on one side of 0
 // … that ends at 0, or has it inside: the ways from there to an end.
 constexpr std::array ways_to_one{1 / 64.0, 1 / 16.0, 1 / 8.0, 1 / 4.0, 3 / 8.0,
                                  1 / 2.0,  5 / 8.0,  3 / 4.0, 7 / 8.0};
-constexpr std::array ways_to_both{1 / 8.0, 1 / 2.0, 3 / 4.0};
+constexpr std::array ways_to_both{1 / 8.0, 1 / 4.0, 1 / 2.0, 3 / 4.0};
 constexpr int most_halvings = 3;
 constexpr double pays_from = 1.25;     // times the present bound, from where on a formula is
 constexpr double near_enough = 1.1;    // a line this near the bound in its middle is not halved

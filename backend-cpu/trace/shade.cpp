@@ -47,7 +47,7 @@ void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
     for (std::size_t k = 0; k < at.size(); ++k) {
         const float size = length(gradient[k]);
         at.n.push_back(size > 0 ? gradient[k] / size : -rays[at.ray[k]].direction);
-        at.even.push_back(std::min(size / (at.slope[k] * shading::flat_from), 1.0f));
+        at.even.push_back(clamp(size / (at.slope[k] * shading::flat_from), shading::min_slope, 1));
     }
 }
 

@@ -12,13 +12,13 @@ $if PASSES
 bool fathom_close = false;  // ir/shading.h, CLOSE
 bool fathom_passed = false; // the ray has gone through what has no inside
 
-// A draw takes at most fathom_turns steps a ray. What a ray that goes on needs is kept, and given back to the next draw:
-//   0  the ray from the eye: t, before, stride, reached; one from a light: t of the hit, s, stride, shadow
-//   1  of that from a light: at, quiet; of one from the eye: to an estimate nearing, where it was close
-//   2  the colour without that light
-//   3  the steps, the touches (+ 16 where it aims) or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
-//      eye's ray is undecided, 2 where one from a light is, 4 where the eye's ray has gone through what has no inside, and
-//      8 where it has been close to something
+$# A draw takes at most fathom_turns steps a ray. What a ray that goes on needs is kept, and given back to the next draw:
+$#   0  the ray from the eye: t, before, stride, reached; one from a light: t of the hit, s, stride, shadow
+$#   1  of that from a light: at, quiet; of one from the eye: to an estimate nearing, where it was close
+$#   2  the colour without that light
+$#   3  the steps, the touches (+ 16 where it aims) or the steps of the ray from the light, which light (-1: the eye's ray), 1 where the
+$#      eye's ray is undecided, 2 where one from a light is, 4 where the eye's ray has gone through what has no inside, and
+$#      8 where it has been close to something
 uniform int fathom_turns, fathom_budget;
 #ifdef FATHOM_BEGINS // the host never lets rays go on
 const bool fathom_resumed = false;

@@ -7,7 +7,8 @@ vec3 fathom_shade(vec3 origin, vec3 direction, float t) {
     vec3 above = p - $LIFT * h * direction;
     vec3 g = vec3(0.0);
     vec3 n = -direction;
-    float slope = 0.0, even = 1.0; // even: less at an edge
+$# even: less than 1 at an edge.
+    float slope = 0.0, even = 1.0;
 $if MANY_SLOPES
     float bent = 0.0, own = 1.0; // what rises as the surface itself does is open
 $end

@@ -9,8 +9,8 @@ $end
                 if (slope > 0.0) n = g / slope;
 $if MANY_SLOPES
                 own = max(sqrt(slope * slope + $CREASE * 0.0625 * bent * bent / (h * h)), $MIN_SLOPE);
-                even = min(slope / (own * $FLAT_FROM), 1.0);
+                even = clamp(slope / (own * $FLAT_FROM), $MIN_SLOPE, 1.0);
 $else
-                even = min(slope / $FLAT_FROM, 1.0);
+                even = clamp(slope / $FLAT_FROM, $MIN_SLOPE, 1.0);
 $end
             }
