@@ -35,7 +35,8 @@ bool is_foreign_transform(std::string_view name) { return is_one_of(name, transf
 std::string Builder::transform_text(Index name) const {
     const Index open = name + 1, close = match(open);
     std::string out(text(name));
-    const bool rotate = out == "rotate", color = out == "color";
+    const bool rotate = out == "rotate", color = out == "color",
+               extrusion = out == "linear_extrude";
     if (rotate && kind(open + 1) == Tok::ListOpen) out = "rotate_euler";
     for (const auto &[theirs, ours] : scad_names)
         if (out == theirs) out = ours;
@@ -69,8 +70,26 @@ std::string Builder::transform_text(Index name) const {
         const std::string_view word = text(i);
         const bool in_degrees = rotate && angle && kind(i) == Tok::Number && word != "0" &&
                                 word.find_first_not_of("0123456789.") == std::string_view::npos;
-        const bool twists = kind(i) == Tok::Number && kind(i - 1) == Tok::Assign &&
-                            text(i - 2) == "twist"; // in degrees
+        const Index value = kind(i - 1) == Tok::Minus ? i - 1 : i;
+        const bool twists = extrusion && i > open + 1 && kind(value - 1) == Tok::Assign &&
+                            text(value - 2) == "twist" &&
+                            is_one_of(kind(i), {Tok::Number, Tok::Name});
+        if (extrusion && kind(i) == Tok::Minus && kind(i - 1) == Tok::Assign &&
+            text(i - 2) == "twist" && is_one_of(kind(i + 1), {Tok::Number, Tok::Name})) {
+            end = token(i).end; // the other way round
+            continue;
+        }
+        if (twists) { // in degrees, and the other way round
+            const std::string sign = value == i && word != "0" ? "-" : "";
+            out += sign + std::string(word) + (kind(i) == Tok::Number ? "deg" : " * 1deg");
+            end = token(i).end;
+            continue;
+        }
+        if (extrusion && depth == 1 && word == "scale" && kind(i + 1) == Tok::Assign) {
+            out += "taper";
+            end = token(i).end;
+            continue;
+        }
         const bool alone =
             kind(i) == Tok::Name &&
             is_one_of(kind(i - 1), {Tok::Open, Tok::FreshOpen, Tok::ListOpen, Tok::Comma}) &&
@@ -80,7 +99,7 @@ std::string Builder::transform_text(Index name) const {
         else if (color && kind(i) == Tok::String)
             out += word.substr(1, word.size() - 2);
         else
-            out += std::string(word) + (in_degrees || twists       ? "deg"
+            out += std::string(word) + (in_degrees                 ? "deg"
                                         : rotate && angle && alone ? " * 1deg"
                                                                    : "");
         end = token(i).end;
@@ -114,7 +133,8 @@ bool Builder::juxtaposed_calls(Index first, Index at) {
     if (text(first) == "color" && kind(match(first + 1) - 2) == Tok::Comma)
         d.note("what light passes through is not drawn: the alpha is left away");
     for (Index i = first; i < shape; ++i)
-        if (text(i) == "angle" && kind(i + 1) == Tok::Assign && text(i + 2) != "360")
+        if (text(i) == "angle" && is_one_of(kind(i + 1), {Tok::Assign, Tok::Colon}) &&
+            text(i + 2) != "360")
             d.note("`revolve` turns all the way round: cut off what is not wanted, as with "
                    "`- box([4, 9, 4]).translate([2, 0, 2])`");
     d.help("write " + in_code(moved + "(…)" + chain),
