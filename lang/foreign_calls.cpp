@@ -70,20 +70,18 @@ std::string Builder::transform_text(Index name) const {
         const std::string_view word = text(i);
         const bool in_degrees = rotate && angle && kind(i) == Tok::Number && word != "0" &&
                                 word.find_first_not_of("0123456789.") == std::string_view::npos;
-        const Index value = kind(i - 1) == Tok::Minus ? i - 1 : i;
-        const bool twists = extrusion && i > open + 1 && kind(value - 1) == Tok::Assign &&
-                            text(value - 2) == "twist" &&
-                            is_one_of(kind(i), {Tok::Number, Tok::Name});
-        if (extrusion && kind(i) == Tok::Minus && kind(i - 1) == Tok::Assign &&
-            text(i - 2) == "twist" && is_one_of(kind(i + 1), {Tok::Number, Tok::Name})) {
-            end = token(i).end; // the other way round
-            continue;
-        }
-        if (twists) { // in degrees, and the other way round
-            const std::string sign = value == i && word != "0" ? "-" : "";
-            out += sign + std::string(word) + (kind(i) == Tok::Number ? "deg" : " * 1deg");
-            end = token(i).end;
-            continue;
+        if (extrusion && kind(i - 1) == Tok::Assign && text(i - 2) == "twist") {
+            const bool negative = kind(i) == Tok::Minus; // in degrees, and the other way round
+            const Index value = negative ? i + 1 : i;
+            const bool name =
+                kind(value) == Tok::Name && is_one_of(kind(value + 1), {Tok::Comma, Tok::Close});
+            if (name || kind(value) == Tok::Number) {
+                out += negative || text(value) == "0" ? "" : "-";
+                out += std::string(text(value)) + (name ? " * 1deg" : "deg");
+                i = value;
+                end = token(i).end;
+                continue;
+            }
         }
         if (extrusion && depth == 1 && word == "scale" && kind(i + 1) == Tok::Assign) {
             out += "taper";
