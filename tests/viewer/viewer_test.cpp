@@ -92,23 +92,10 @@ TEST_CASE("a number that was edited before, and a param, leave the driver alone;
     CHECK(difference(window.picture(), cold, 0, 2.0f / 255) == 0); // the driver folds constants
 }
 
-static bool shows_red(const Picture &picture) {
-    for (int y = 0; y < picture.height; y += 4)
-        for (int x = 0; x < picture.width; x += 4)
-            if (pixel(picture, x, y)[0] > 2 * pixel(picture, x, y)[2]) return true;
-    return false;
-}
-
-// A frame may take several draws, and none may be there yet on a busy machine.
-static Picture whole_picture(Window &window) {
-    Picture last = window.picture();
-    for (int look = 0; look < 50; ++look) {
-        Picture next = window.picture();
-        const bool is_whole = shows_red(next) && difference(last, next, 0, 0.02f) < 0.01;
-        last = std::move(next);
-        if (is_whole) break;
-    }
-    return last;
+// Its upper half is what is compared: what the window is at is told in one more line of the panel.
+static Picture upper_half(Picture picture) {
+    picture.height = picture.height / 2 + status_height;
+    return picture;
 }
 
 TEST_CASE("what is steep is shown by one bound, and then by cells without another save") {
@@ -117,12 +104,12 @@ TEST_CASE("what is steep is shown by one bound, and then by cells without anothe
         "dfmodel.blobby(10, size: [2, 2, 2], radius: 0.15, seed: 1).paint(red)\n";
     bool shows_both = false; // not where cells are found before the first frame of a busy machine
     for (int start = 0; start < 3 && !shows_both; ++start) {
-        Window window(steep + camera, {"--size", "240x160"});
-        window.picture(); // from here on each says that one was written
-        const Picture first = whole_picture(window);
+        Window window(steep + camera);
+        const Picture first = upper_half(window.picture());
+        CHECK(pixel(first, 229, 150)[0] > 2 * pixel(first, 229, 150)[2]);
         shows_both = window.reloads(2);
         CHECK(window.lines().back().find("good") != std::string::npos);
-        CHECK(difference(first, whole_picture(window), 0, 0.02f) <
+        CHECK(difference(first, upper_half(window.picture()), 0, 0.02f) <
               0.01); // hits land a little elsewhere
     }
     CHECK(shows_both);
