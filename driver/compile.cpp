@@ -175,6 +175,7 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
     if (effort.stop.now()) return cancel(out);
     if (out.good()) {
         enter(options, Phase::Lower);
+        if (options.present_bounds) proof::add_present_bounds(out.scene);
         if (options.parts)
             out.parts = ir::lower_with_parts(out.scene);
         else
@@ -347,6 +348,13 @@ Compilation compile_file(const std::filesystem::path &file, const CompileOptions
     }
     out.files = files.touched();
     return out;
+}
+
+std::optional<proof::PresentBounds> prove_present_bounds(const ir::Scene &scene,
+                                                         proof::BoundCache &bounds,
+                                                         const std::function<bool()> &stop) {
+    Stop asked(stop);
+    return proof::prove_present_bounds(scene, &bounds, &asked);
 }
 
 bool is_steep(const ir::Scene &scene) {

@@ -5,6 +5,7 @@
 #include "driver/files.h"
 #include "ir/lower/lower.h"
 #include "proof/bound_cache.h"
+#include "proof/present_bounds.h"
 #include "save-format/save_format.h"
 #include "typecheck/check.h"
 
@@ -42,6 +43,8 @@ struct CompileOptions {
     // Bounds by cells of what is marched and steep, so many along a side at most (proof/prove.h):
     // for what is drawn. 0: none but those of fields in a region.
     int cells = 0;
+    bool present_bounds = false;       // for a host that proves bounds anew while params move
+                                       // (proof/present_bounds.h)
     double flat_thickness = 0;         // as typecheck::Options has it
     std::vector<std::string> fields{}; // too
     // The scene's own text where it is being typed and not saved yet; compile_file reads it in place
@@ -96,6 +99,12 @@ Compilation compile_loaded(std::string name, std::string text, const typecheck::
 // stand. Files above 4 MiB are not compiled.
 void leave_out_unusable(const std::string &name, const std::string &text,
                         const std::filesystem::path &scene, save::ImportOptions &import);
+
+// What is proved of a scene that was compiled with `present_bounds`, for the values that its params
+// have. The cache as in CompileOptions; asked now and then, `stop` ends it with nothing.
+std::optional<proof::PresentBounds> prove_present_bounds(const ir::Scene &scene,
+                                                         proof::BoundCache &bounds,
+                                                         const std::function<bool()> &stop);
 
 // Is some shape so steep that it may be marched by bounds by cells (CompileOptions::cells)?
 bool is_steep(const ir::Scene &scene);

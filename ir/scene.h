@@ -94,6 +94,7 @@ struct Param {
     bool is_color = false;
     bool has_range = false;
     bool structural = false; // a change rebuilds the scene; else it is a uniform
+    bool is_bound = false;   // not of the text: a PresentBound's number
     std::array<double, 4> value{}, initial{}, lo{}, hi{};
     Span origin;
 
@@ -196,6 +197,13 @@ struct Rounding {
     double subtracted = 0; // by which all marched distances are less
 };
 
+// A shape's bound at the params' present values, as far as it is known: `facts[shape].lipschitz` is
+// at most this param (proof/present_bounds.h).
+struct PresentBound {
+    ShapeId shape;
+    std::uint32_t param; // index into Scene::params
+};
+
 struct Scene {
     Graph graph;
     Shapes shapes;
@@ -209,8 +217,9 @@ struct Scene {
     // Of shapes whose marched field has bounds that differ much from cell to cell: of a Within its
     // child's in the region, of what has a guard its own in its `bounds`. Filled by the analysis.
     std::map<ShapeId, CellBounds> cells;
-    std::vector<CacheFact> caches; // by CacheId; filled by the analysis
-    std::vector<Param> params;
+    std::vector<CacheFact> caches;            // by CacheId; filled by the analysis
+    std::vector<Param> params;                // those of bounds behind all others
+    std::vector<PresentBound> present_bounds; // none, but where a host asked for them
     std::vector<Light> lights;
     Lighting lighting;
     Camera camera;

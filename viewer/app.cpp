@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <span>
 #include <utility>
 
 namespace fathom::viewer {
@@ -113,6 +114,7 @@ void App::take(std::unique_ptr<Build> build) {
 
     std::vector<ir::Param> before = std::move(params);
     params = build->compilation.scene.params;
+    std::erase_if(params, [](const ir::Param &param) { return param.is_bound; });
     carry_over(before, params);
     if (drop_outdated(before, params, newest.structural)) rebuild(newest.structural);
     const std::vector<std::string> old_views = scene ? scene->views : std::vector<std::string>{};
@@ -142,6 +144,33 @@ void App::take(std::unique_ptr<Build> build) {
     status.bound = verdict.lipschitz ? fmt::format("L {:.4g} {}", *verdict.lipschitz,
                                                    driver::status_name(verdict.status))
                                      : "no bound";
+}
+
+// A present bound holds at the values that it was proved for alone: until that of others is there,
+// rays go by what holds for the whole ranges.
+void App::follow_params() {
+    if (!scene) return;
+    const std::vector<ir::PresentBound> &bounds = scene->compilation.scene.present_bounds;
+    const auto present = [&](const std::vector<ir::Param> &others) {
+        return std::ranges::equal(params, std::span(others).first(params.size()), {},
+                                  &ir::Param::value, &ir::Param::value);
+    };
+    if (std::exchange(sent_number, scene->number) != scene->number || !present(sent)) {
+        sent = scene->compilation.scene.params; // whose present bounds are unknown
+        std::ranges::copy(params, sent.begin());
+        status.bound_now.clear();
+        if (!bounds.empty()) worker->prove_at(scene->number, params);
+    }
+    const std::optional<Worker::PresentBounds> proved = worker->take_bounds();
+    if (!proved || proved->number != scene->number || !present(proved->params)) return;
+    for (std::size_t i = 0; i < bounds.size(); ++i)
+        sent[bounds[i].param].value[0] = proved->bounds.values[i];
+    if (controls.look != gl::Look::Picture) progress.stale = true; // it shows steps
+    clock.frames_due = std::max(clock.frames_due, 1);
+    status.bound_now = fmt::format("{:.4g} as the params stand", proved->bounds.whole);
+    if (settings.tell)
+        settings.tell(
+            fmt::format("bound: {}, proved in {:.2f} ms", status.bound_now, proved->milliseconds));
 }
 
 void App::param_changed(const ir::Param &param) {

@@ -123,7 +123,9 @@ struct App {
     // The good picture: its scene, its programs, what was drawn of it.
     std::unique_ptr<Build> scene;
     std::optional<gl::Program> program, probe;
-    std::vector<ir::Param> params;
+    std::vector<ir::Param> params; // the user's
+    std::vector<ir::Param> sent;   // … and the present bounds, as the program takes them
+    std::size_t sent_number = 0;   // of the build that they are of
     gl::Canvas canvas;
     gl::Timer timer;
     Cached cached;
@@ -156,6 +158,7 @@ struct App {
     void rebuild(std::vector<driver::Override> values);
     bool animated() const { return scene && clock.running && scene->picture.reads_time; }
     void param_changed(const ir::Param &param);
+    void follow_params();  // what is sent, and bounds for the present values
     void hear_editor();    // what was typed since the last time
     void outline_cursor(); // the shape that the editor's cursor stands in
     void write_param(const ir::Param &param);

@@ -145,7 +145,7 @@ bool App::draw_cached(int width, int height) {
         inputs.width = width;
         inputs.height = height;
         inputs.mode = gl::Mode::Picture;
-        if (!cached.draw(inputs, params, true)) {
+        if (!cached.draw(inputs, sent, true)) {
             controls.cache = false;
             note("no noise cache: the graphics card has no memory for it");
             return false;
@@ -162,7 +162,7 @@ void App::draw_probe() {
     if (progress.probed || !(slice || check)) return;
     labels.clear();
     if (!probe) return worker->want_probe();
-    if (!canvas.probe(*probe, tile_views(canvas.width(), canvas.height()), params)) return;
+    if (!canvas.probe(*probe, tile_views(canvas.width(), canvas.height()), sent)) return;
     progress.probed = true;
     const std::vector<float> values = canvas.read_probe();
     if (check) {
@@ -296,6 +296,7 @@ void App::draw(double seconds) {
     const bool moving =
         (animated() || by_hand) && !controls.always && !controls.rotate && recording.sequence == 0;
     const bool drew_before = std::exchange(progress.drew_now, false);
+    follow_params();
     if (program && !controls.cache) draw_scene(width, height, moving, drew_before);
     if (controls.cache && draw_cached(width, height)) {
         // in place of the picture

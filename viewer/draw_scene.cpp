@@ -51,7 +51,7 @@ void App::measure(int width, int height) {
     canvas.give_up();
     for (int i = 0; i < 2; ++i) {
         const Clock::time_point start = Clock::now();
-        if (!canvas.draw(*program, few_wide, few_high, tiles, params, 0)) return;
+        if (!canvas.draw(*program, few_wide, few_high, tiles, sent, 0)) return;
         status.frame_ms = milliseconds_since(start) * (static_cast<double>(width) / few_wide) *
                           (static_cast<double>(height) / few_high);
     }
@@ -83,7 +83,7 @@ bool App::draw_rows(bool whole) {
     const auto patient = [&] { return whole || milliseconds_since(start) <= turn_ms; };
     while (progress.next_row < drawn.height) {
         const bool timed = timer.begin();
-        const bool good = canvas.draw(*program, drawn.width, drawn.height, tiles, params,
+        const bool good = canvas.draw(*program, drawn.width, drawn.height, tiles, sent,
                                       progress.next_sample, progress.next_row, band, patient);
         timer.end();
         if (!good) {
@@ -242,7 +242,7 @@ bool App::draw_cached_frame(double scale) {
     inputs.mode = gl::Mode::Linear;
     gl::finish();
     const Clock::time_point start = Clock::now();
-    if (!cached.draw(inputs, params, false)) return false;
+    if (!cached.draw(inputs, sent, false)) return false;
     gl::finish();
     gl::took(cached.choice, cached.looked_up(), milliseconds_since(start) / (scale * scale));
     if (controls.analysis) cached.count();

@@ -64,7 +64,7 @@ float show_status(const Shown &shown) {
     const std::size_t remarks = shown.remarks.size();
     std::vector<std::string> parts{
         shown.file + (shown.errors.empty() ? "" : " (last good)"),
-        status.bound,
+        status.bound + (status.bound_now.empty() ? "" : ", " + status.bound_now),
         fmt::format("front end {:.1f} ms", status.front_end_ms),
         fmt::format("{:.1f} KB GLSL", static_cast<double>(status.shader_bytes) / 1024),
         status.linked_anew ? fmt::format("driver {:.0f} ms", status.driver_ms)

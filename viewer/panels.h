@@ -17,7 +17,8 @@ namespace fathom::viewer {
 struct Status {
     double front_end_ms = 0, driver_ms = 0, frame_ms = 0;
     std::size_t shader_bytes = 0;
-    std::string bound;     // "L 1.25 proved"
+    std::string bound;     // "L 401 proved"
+    std::string bound_now; // "1.25 as the params stand"; empty: that is not known
     std::string note;      // the last thing done: "camera line copied"
     std::string trouble;   // what stays wrong: saves are not followed
     double mean_steps = 0; // a ray

@@ -134,6 +134,48 @@ void Worker::show(std::string text) {
     again();
 }
 
+void Worker::prove_at(std::size_t number, std::vector<ir::Param> params) {
+    {
+        std::lock_guard lock(mutex_);
+        wanted_bounds_ = PresentBounds{number, std::move(params), {}};
+    }
+    moved_ = true;
+    watcher_.wake();
+}
+
+std::optional<Worker::PresentBounds> Worker::take_bounds() {
+    std::lock_guard lock(mutex_);
+    return std::exchange(present_bounds_, std::nullopt);
+}
+
+// `scene`: of the newest build.
+void Worker::prove_present(const ir::Scene &scene) {
+    std::optional<PresentBounds> wanted;
+    {
+        std::lock_guard lock(mutex_);
+        moved_ = false;
+        wanted = std::exchange(wanted_bounds_, std::nullopt);
+    }
+    if (!wanted || wanted->number != number_) return;
+    const auto start = std::chrono::steady_clock::now();
+    ir::Scene present = scene;
+    std::ranges::copy(wanted->params, present.params.begin());
+    const auto stop = [this] {
+        saved_ = saved_ || watcher_.wait(std::chrono::milliseconds(0));
+        return ending_ || asked_ || moved_ || saved_;
+    };
+    auto bounds = driver::prove_present_bounds(present, bounds_, stop);
+    if (!bounds) return;
+    wanted->bounds = std::move(*bounds);
+    wanted->milliseconds =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    {
+        std::lock_guard lock(mutex_);
+        present_bounds_ = std::move(wanted);
+    }
+    hooks_.ready();
+}
+
 void Worker::want_probe() {
     if (!probe_.exchange(true)) again();
 }
@@ -144,6 +186,7 @@ std::unique_ptr<Build> Worker::build(int cells) {
     auto result = std::make_unique<Build>();
     driver::CompileOptions options = options_;
     options.parts = true;
+    options.present_bounds = true;
     options.cells = cells;
     options.bounds = &bounds_;
     options.entered = [this](driver::Phase phase) { enter(stage_of(phase)); };
@@ -188,10 +231,11 @@ std::unique_ptr<Build> Worker::build(int cells) {
     return result;
 }
 
-// The build's scene, where it has fields that may be cached.
-static std::optional<ir::Scene> with_caches(const Build &build) {
+// The build's scene, where it has fields that may be cached, or bounds for the present values.
+static std::optional<ir::Scene> worked_on(const Build &build) {
     const ir::Scene &scene = build.compilation.scene;
-    if (!build.good() || scene.graph.cache_count() == 0) return std::nullopt;
+    if (!build.good() || (scene.graph.cache_count() == 0 && scene.present_bounds.empty()))
+        return std::nullopt;
     return scene;
 }
 
@@ -227,20 +271,25 @@ void Worker::run() {
             const bool steep = made->good() && driver::is_steep(made->compilation.scene);
             const std::size_t regions = made->compilation.scene.cells.size();
             const int part_stride = made->compilation.parts.stride;
-            std::optional<ir::Scene> scene = with_caches(*made); // the build goes to the window
+            std::optional<ir::Scene> scene = worked_on(*made); // the build goes to the window
             hand_over(std::move(made), linkers);
             // Bounds by cells take longer to find than all else: the first picture is without them.
             if (steep && !ending_ && !asked_) {
                 std::unique_ptr<Build> by_cells = build(driver::cells_of_views);
                 if (!ending_ && !asked_ && by_cells->compilation.scene.cells.size() > regions) {
-                    scene = with_caches(*by_cells);
+                    scene = worked_on(*by_cells);
                     hand_over(std::move(by_cells), linkers);
                 }
             }
             enter(Stage::Rest);
-            if (lent && scene && !ending_ && !asked_) build_cached(*scene, part_stride, number_);
-            while (!ending_ && !asked_ && !watcher_.wait(std::chrono::hours(1))) {
-            }
+            if (lent && scene && scene->graph.cache_count() > 0 && !ending_ && !asked_)
+                build_cached(*scene, part_stride, number_);
+            saved_ = false;
+            while (!ending_ && !asked_ && !saved_)
+                if (scene && moved_)
+                    prove_present(*scene);
+                else
+                    saved_ = watcher_.wait(std::chrono::hours(1));
         }
     }
     if (lent) hooks_.leave_context();

@@ -72,6 +72,18 @@ class Worker {
     using Kept = std::variant<gl::CachePrograms, std::string>;
     std::optional<Kept> take_cached(std::size_t number);
 
+    // Bounds of the build of that number at those values of its params.
+    struct PresentBounds {
+        std::size_t number = 0;
+        std::vector<ir::Param> params; // the user's
+        proof::PresentBounds bounds;
+        double milliseconds = 0; // that the proof took
+    };
+    // Proves them, unless a newer build or newer values are wanted before they are there.
+    void prove_at(std::size_t number, std::vector<ir::Param> params);
+    // The newest that were not taken yet, or nothing.
+    std::optional<PresentBounds> take_bounds();
+
     // Builds again with these values of structural params, over those of the command line.
     void rebuild(std::vector<driver::Override> overrides);
 
@@ -94,6 +106,7 @@ class Worker {
     void run();
     std::unique_ptr<Build> build(int cells);
     void hand_over(std::unique_ptr<Build> made, Linkers &linkers);
+    void prove_present(const ir::Scene &scene);
     void build_cached(const ir::Scene &scene, int part_stride, std::size_t number);
     void again();
     void enter(Stage stage); // and the window hears of it
@@ -103,18 +116,23 @@ class Worker {
     proof::BoundCache bounds_; // from one edit to the next
     Hooks hooks_;
     driver::Watcher watcher_;
-    std::mutex mutex_; // over the six below
+    std::mutex mutex_; // over the eight below
     std::unique_ptr<Build> finished_;
     std::optional<Kept> kept_;
     std::size_t cached_number_ = 0; // of the build that `kept_` is for
     std::vector<driver::Override> overrides_;
     std::string complaint_;
     std::optional<std::string> unsaved_;
+    std::optional<PresentBounds> wanted_bounds_; // without the bounds
+    std::optional<PresentBounds> present_bounds_;
     std::atomic<Stage> stage_ = Stage::Rest;
     std::atomic<std::chrono::steady_clock::time_point> begun_; // the work on the newest save
     std::atomic<bool> lent_ = false;
     std::atomic<bool> asked_ = false, ending_ = false, probe_ = false;
-    bool pruning_ = false;   // of the thread's own
+    std::atomic<bool> moved_ = false; // bounds are wanted for other values
+    // The thread's own.
+    bool pruning_ = false;
+    bool saved_ = false;     // something changed since the newest build
     std::size_t number_ = 0; // of builds
     std::thread thread_;     // last: starts when all else is there
 };

@@ -176,6 +176,36 @@ TEST_CASE("no save of a hundred is missed, and memory stays flat") {
     CHECK(flat);
 }
 
+TEST_CASE(
+    "what three sliders make steep is marched by the bound of the values that they stand on") {
+    const auto text = [](const std::string &a) {
+        return "param a = " + a +
+               " in 0..20\nparam b = 1 in 0..20\nparam c = 0.3 in 0..1\n"
+               "sphere(2).displace(p => a * c * sin(b * p.x) * cos(b * p.y)).paint(red)\n" +
+               camera;
+    };
+    const Picture cold = cold_picture(text("2.2"));
+    Window window(text("0.2"));
+    const auto bounds = [&] { // that were proved so far
+        std::istringstream in(window.folder.read("errors.txt"));
+        std::vector<double> result;
+        for (std::string line; std::getline(in, line);)
+            if (line.starts_with("bound: ")) result.push_back(std::stod(line.substr(7)));
+        return result;
+    };
+    REQUIRE(waited([&] { return bounds().size() == 1; }));
+    CHECK(bounds().back() < 1.2);
+    window.key("shift+period"); // a tenth of the range
+    REQUIRE(waited([&] { return bounds().size() == 2; }));
+    CHECK(bounds().back() > 1.6);
+    CHECK(bounds().back() < 2.4);
+    CHECK(window.lines().size() == 1);                                  // nothing was compiled
+    CHECK(difference(window.picture(), cold, 0.4, 2.0f / 255) < 0.001); // below the sliders
+    window.reload(text("0"));
+    REQUIRE(waited([&] { return bounds().size() >= 3; }));
+    CHECK(bounds().back() == 1);
+}
+
 TEST_CASE("sliders: by keys and by the mouse; the value goes into the text, and back") {
     const std::string text =
         "param size = 1 in 0.5..2\nparam round = false\nsphere(size).paint(red)\n" + camera;
