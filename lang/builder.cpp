@@ -373,9 +373,10 @@ void Builder::trailing(Index first, Index last) {
         const Index open = match(first - 1);
         const Span head{id_, token(open - 1).begin, token(first - 1).end};
         const std::string chain = "." + transform_text(open - 1);
-        foreign(head, "a transform stands behind the shape that it moves")
-            .help("write " + ("`union { … }" + chain + "`"),
-                  {{head, "union"}, {{id_, whole.end, whole.end}, chain}});
+        Diagnostic &d = foreign(head, "a transform stands behind the shape that it moves");
+        if (const auto lost = lost_of_transform(open - 1); !lost.empty()) d.note(std::string(lost));
+        d.help("write " + ("`union { … }" + chain + "`"),
+               {{head, "union"}, {{id_, whole.end, whole.end}, chain}});
         push(Poison{}, whole, tall);
         return;
     }

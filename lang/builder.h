@@ -297,7 +297,11 @@ class Builder {
     Index body_below(Index at) const;
     bool foreign_import(Index at);
     bool foreign_slice(Index at);
+    // Transforms of OpenSCAD (foreign_transforms.cpp).
+    std::string value_text(Index from, Index to) const;
+    std::string degrees_text(Index from, Index to) const;
     std::string transform_text(Index name) const;
+    std::string_view lost_of_transform(Index name) const;
     std::string lisp_value(Index &at) const;
     std::string lisp_part(Index at, Index end) const;
     std::string lisp_form(Index open) const;

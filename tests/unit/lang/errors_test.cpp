@@ -152,7 +152,7 @@ TEST_CASE("forms of other languages are answered with our own") {
         {"let l = [f 1, g]", "foreign-syntax", "let l = [f(1), g]"},
         {"let a = 1 in a", "foreign-syntax", "let a = 1; a"},
         {"assert a < 2", "foreign-syntax", "assert(a < 2)"},
-        {"rotate([0, 45, 0]) cube(1)", "foreign-syntax", "box(1).rotate_euler([0, 45deg, 0])"},
+        {"rotate([0, 45, 0]) cube(1)", "foreign-syntax", "cube(1).rotate_euler([0, 45deg, 0])"},
         {"translate([1, 2, 3]) { a; b }", "foreign-syntax", "union { a; b }.translate([1, 2, 3])"},
         {"import parts/arch.sdf", "foreign-syntax", "import \"parts/arch.sdf\""},
         {"import ../arch as arch", "foreign-syntax", "import \"../arch.sdf\" as arch"},

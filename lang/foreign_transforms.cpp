@@ -1,0 +1,265 @@
+// OpenSCAD's transforms, which stand before what they move: each as it is written here, for the
+// same solid.
+#include "base/text.h"
+#include "lang/builder.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+namespace fathom::lang {
+
+namespace {
+
+struct Transform {
+    std::string_view theirs, ours;
+    std::string_view behind; // what makes the same solid of it
+};
+constexpr Transform transforms[] = {{"translate", "translate", ""},
+                                    {"rotate", "rotate", ""},
+                                    {"scale", "scale", ""},
+                                    {"mirror", "reflect", ""},
+                                    {"color", "paint", ""},
+                                    {"resize", "resize", ""},
+                                    {"projection", "projection", ""},
+                                    {"offset", "offset", ""},
+                                    {"linear_extrude", "extrude", ""},
+                                    {"rotate_extrude", "revolve", ".orient(Y, Z)"}, // about z
+                                    {"multmatrix", "multmatrix", ""},
+                                    {"twist", "twist", ""},
+                                    {"render", "", ""}}; // draws the same
+
+// What becomes of the value of an argument.
+enum class Turned { Kept, Degrees, OtherWay, Color, Away };
+struct TransformArgument {
+    std::string_view transform, theirs; // the names; of the first and second argument `1` and `2`
+    std::string_view ours;              // empty: without a name
+    Turned turned;
+};
+constexpr TransformArgument transform_arguments[] = {
+    {"translate", "v", "", Turned::Kept},
+    {"scale", "v", "", Turned::Kept},
+    {"mirror", "v", "", Turned::Kept},
+    {"rotate", "1", "", Turned::Degrees},
+    {"rotate", "a", "", Turned::Degrees},
+    {"rotate", "2", "axis", Turned::Kept},
+    {"rotate", "v", "axis", Turned::Kept},
+    {"color", "1", "", Turned::Color},
+    {"color", "c", "", Turned::Color},
+    {"color", "2", "", Turned::Away},
+    {"color", "alpha", "", Turned::Away},
+    {"offset", "r", "", Turned::Kept},
+    {"offset", "delta", "", Turned::Kept},
+    {"offset", "chamfer", "", Turned::Away},
+    {"linear_extrude", "h", "height", Turned::Kept},
+    {"linear_extrude", "twist", "twist", Turned::OtherWay},
+    {"linear_extrude", "scale", "taper", Turned::Kept}};
+
+// What a distance field has no need of, or has no parts for.
+constexpr std::array<std::string_view, 8> needless_arguments = {
+    "center", "convexity", "slices", "segments", "angle", "steps", "centre", "resolution"};
+
+bool is_degrees(std::string_view number) {
+    return number.find_first_not_of("0123456789.") == std::string_view::npos;
+}
+
+// The half of a value that stands in a text.
+std::string half_of(std::string_view value) {
+    double number = 0;
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+    const std::string_view unit = value.substr(static_cast<std::size_t>(end - value.data()));
+    if (error == std::errc{} && (unit.empty() || unit == "deg"))
+        return format_shortest(number / 2) + std::string(unit);
+    const bool plain = value.find_first_of(" +-*/%?<>=&|") == std::string_view::npos;
+    return plain ? std::string(value) + " / 2" : "(" + std::string(value) + ") / 2";
+}
+
+} // namespace
+
+bool is_foreign_transform(std::string_view name) {
+    return std::ranges::find(transforms, name, &Transform::theirs) != std::end(transforms);
+}
+
+// The words from `from` up to `to`, with `:` behind the names of arguments.
+std::string Builder::value_text(Index from, Index to) const {
+    std::string out;
+    std::uint32_t end = token(from).begin;
+    for (Index i = from; i < to; ++i) {
+        const bool assign = kind(i) == Tok::Assign;
+        if (!assign) out += text(end, token(i).begin);
+        out += !assign ? text(i) : token(i).end < token(i + 1).begin ? ":" : ": ";
+        end = token(i).end;
+    }
+    return out;
+}
+
+// An angle in degrees: each term of a sum has one unit; what is no sum of products has it behind.
+std::string Builder::degrees_text(Index from, Index to) const {
+    if (to == from + 1 && kind(from) == Tok::Number)
+        return std::string(text(from)) +
+               (text(from) == "0" || !is_degrees(text(from)) ? "" : "deg");
+    const auto next = [&](Index i) { return match(i) > i ? match(i) + 1 : i + 1; };
+    bool sums = true; // and products
+    for (Index i = from; i < to; i = next(i))
+        sums = sums && !is_one_of(kind(i), {Tok::Question, Tok::Less, Tok::Greater, Tok::If});
+    if (!sums) return "(" + value_text(from, to) + ") * 1deg";
+    std::string out;
+    std::uint32_t end = token(from).begin;
+    for (Index term = from; term < to;) {
+        Index unit = to, past = term;
+        bool whole = true; // the number is a factor of the whole term
+        while (past < to && (past == term || !is_one_of(kind(past), {Tok::Plus, Tok::Minus}))) {
+            const bool divides = past > term && kind(past - 1) == Tok::Slash;
+            if (is_one_of(kind(past), {Tok::Percent, Tok::Caret})) whole = false;
+            if (unit == to && !divides && kind(past) == Tok::Number && is_degrees(text(past)))
+                unit = past;
+            past = next(past);
+        }
+        if (past == term) past = term + 1;
+        if (!whole) unit = to;
+        const bool signs = past == term + 1 && is_one_of(kind(term), {Tok::Plus, Tok::Minus});
+        const bool zero = unit == term && past == term + 1 && text(unit) == "0";
+        out += text(end, token(term).begin);
+        if (unit < past) {
+            out += value_text(term, unit + 1) + (zero ? "" : "deg");
+            if (unit + 1 < past) {
+                out += text(token(unit).end, token(unit + 1).begin);
+                out += value_text(unit + 1, past);
+            }
+        } else {
+            out += value_text(term, past) + (signs ? "" : " * 1deg");
+        }
+        end = token(past - 1).end;
+        term = past;
+    }
+    return out;
+}
+
+// A transform of OpenSCAD as it is written here, of which nothing more is said.
+std::string Builder::transform_text(Index name) const {
+    const Index open = name + 1, close = match(open);
+    const auto *row = std::ranges::find(transforms, text(name), &Transform::theirs);
+    if (row->ours.empty()) return {};
+    const auto next = [&](Index i) { return match(i) > i ? match(i) + 1 : i + 1; };
+    std::string ours(row->ours), arguments, height, twist;
+    bool centered = false, list = false;
+    int place = 0;
+    for (Index i = open; i < close; ++i)
+        if (kind(i) == Tok::Assign) diagnostics_.withdraw(Code::ForeignSyntax, span(i));
+    for (Index from = open + 1, to = from; from < close; from = to + 1) {
+        for (to = from; to < close && kind(to) != Tok::Comma;) to = next(to);
+        if (to == from) continue;
+        ++place;
+        const bool named = kind(from) == Tok::Name && is_one_of(kind(from + 1), {Tok::Assign});
+        const std::string_view theirs = named ? text(from) : place == 1 ? "1" : "2";
+        const Index value = named ? from + 2 : from;
+        if (value >= to || kind(from) == Tok::Bad) continue; // `$fn = 64`
+        if (theirs == "center" || theirs == "centre") centered = text(value) == "true";
+        if (named && is_one_of(theirs, needless_arguments)) continue;
+        const auto *found = std::ranges::find_if(transform_arguments, [&](const auto &a) {
+            return a.transform == text(name) && a.theirs == theirs;
+        });
+        const bool known = found != std::end(transform_arguments);
+        std::string written = value_text(value, to);
+        switch (known ? found->turned : Turned::Kept) {
+        case Turned::Kept: break;
+        case Turned::Away: continue;
+        case Turned::Color:
+            if (kind(value) == Tok::String) written = written.substr(1, written.size() - 2);
+            break;
+        case Turned::OtherWay: { // also in degrees
+            const bool negative = kind(value) == Tok::Minus && to == value + 2;
+            const bool sum = !negative && to > value + 1;
+            written = negative         ? degrees_text(value + 1, to)
+                      : sum            ? "-(" + degrees_text(value, to) + ")"
+                      : written == "0" ? written
+                                       : "-" + degrees_text(value, to);
+            break;
+        }
+        case Turned::Degrees:
+            list = kind(value) == Tok::ListOpen && match(value) + 1 == to;
+            if (!list) {
+                written = degrees_text(value, to);
+                break;
+            }
+            written = "[";
+            for (Index a = value + 1, b = a; a < to - 1; a = b + 1) {
+                for (b = a; b < to - 1 && kind(b) != Tok::Comma;) b = next(b);
+                written += text(token(a - 1).end, token(a).begin);
+                written += degrees_text(a, b) + (b < to - 1 ? "," : "]");
+            }
+            break;
+        }
+        if (ours == "extrude" && (theirs == "1" || theirs == "height" || theirs == "h"))
+            height = written;
+        if (ours == "extrude" && theirs == "twist" && written != "0") twist = written;
+        const std::string_view our_name = known ? found->ours : named ? theirs : "";
+        arguments += arguments.empty() ? "" : ", ";
+        arguments += our_name.empty() ? written : std::string(our_name) + ": " + written;
+    }
+    if (list) ours = "rotate_euler";
+    std::string out = ours + "(" + arguments + ")" + std::string(row->behind);
+    if (!twist.empty()) out += ".rotate(" + half_of(twist) + ", axis: Z)"; // 0 at the bottom
+    if (!height.empty() && !centered) out += ".translate(z: " + half_of(height) + ")";
+    return out;
+}
+
+// What a transform does there and not here, or not in the same way; empty: nothing.
+std::string_view Builder::lost_of_transform(Index name) const {
+    const std::string_view theirs = text(name);
+    const Index close = match(name + 1);
+    for (Index i = name + 2; i<close; i = match(i)> i ? match(i) + 1 : i + 1) {
+        const bool named = is_one_of(kind(i + 1), {Tok::Assign, Tok::Colon});
+        if (theirs == "color" && (kind(i) == Tok::Comma || (named && text(i) == "alpha")))
+            return "what light passes through is not drawn: the alpha is left away";
+        if (named && theirs == "offset" && (text(i) == "delta" || text(i) == "chamfer"))
+            return "`offset` rounds the corners that `delta` keeps sharp; a sharp outline is made "
+                   "larger by its own numbers";
+        if (named && theirs == "rotate_extrude" && text(i) == "angle" && text(i + 2) != "360")
+            return "`revolve` turns all the way round: cut off what is not wanted, as with "
+                   "`- box([4, 9, 4]).translate([2, 0, 2])`";
+        if (named && theirs == "linear_extrude" && text(i) == "scale" && text(i + 2) == "[")
+            return "`taper` is one number: both directions become smaller alike";
+    }
+    return {};
+}
+
+// `translate([1, 2, 3]) rotate(…) sphere(1)`: transforms stand behind what they move.
+bool Builder::juxtaposed_calls(Index first, Index at) {
+    if (kind(first) != Tok::Name || kind(first + 1) != Tok::Open ||
+        !is_foreign_transform(text(first)))
+        return false;
+    constexpr int longest_chain = 20;
+    std::string chain;
+    Index shape = first;
+    std::array<std::string_view, longest_chain> lost;
+    std::size_t links = 0;
+    for (; links < longest_chain && kind(shape) == Tok::Name && kind(shape + 1) == Tok::Open &&
+           kind(match(shape + 1) + 1) == Tok::Name && is_foreign_transform(text(shape));
+         ++links) {
+        const std::string one = transform_text(shape);
+        if (!one.empty()) chain.insert(0, "." + one);
+        lost[links] = lost_of_transform(shape);
+        shape = match(shape + 1) + 1;
+    }
+    if (shape < at) return false;
+    failed_ = shape;
+    const Index end = statement_end(first);
+    const std::string moved(text(shape));
+    Diagnostic &d =
+        foreign(span(first, match(first + 1)), "a transform stands behind the shape that it moves");
+    for (std::size_t i = 0; i < links; ++i)
+        if (!lost[i].empty() &&
+            std::find(lost.begin(), lost.begin() + i, lost[i]) == lost.begin() + i)
+            d.note(std::string(lost[i]));
+    const std::string written = in_code(moved + "(…)" + chain);
+    d.help(written == in_code("…")
+               ? "write the shape, and behind it what is done to it, the nearest "
+                 "first"
+               : "write " + written,
+           {{{id_, token(first).begin, token(shape).begin}, ""},
+            {{id_, token(end - 1).end, token(end - 1).end}, chain}});
+    return true;
+}
+
+} // namespace fathom::lang
