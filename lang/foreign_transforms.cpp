@@ -139,7 +139,7 @@ std::string Builder::degrees_text(Index from, Index to) const {
 std::string Builder::transform_text(Index name) const {
     const Index open = name + 1, close = match(open);
     const auto *row = std::ranges::find(transforms, text(name), &Transform::theirs);
-    if (row->ours.empty()) return {};
+    if (row == std::end(transforms) || row->ours.empty()) return {};
     const auto next = [&](Index i) { return match(i) > i ? match(i) + 1 : i + 1; };
     std::string ours(row->ours), arguments, height, twist;
     bool centered = false, list = false;
