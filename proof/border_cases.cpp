@@ -17,8 +17,7 @@ namespace {
 constexpr int max_cases = 600, max_forks = 40;
 constexpr double rounding_of_squares = 1e-12; // what double precision loses
 constexpr double rounding_of_terms = 1e-12;   // what is lost of terms on the way (cases.cpp)
-constexpr double granted_to_sides = 5e-7; // as in all that float32 evaluates: constants are floats
-constexpr double granted_to_unknown = 1e-12; // beside what may have any size
+constexpr double granted_to_unknown = 1e-12;  // beside what may have any size
 
 } // namespace
 
@@ -139,16 +138,28 @@ std::optional<bool> Cases::vectors_agree(int sides) {
 
 bool Cases::are_equal(const Sum &a, const Sum &b) {
     const Sum apart = add(a, b, -1), gap = cleared(apart);
-    if (gap.empty() || is_rounding(apart, a, b)) return true;
+    if (gap.empty()) return true;
+    if (is_rounding(apart, a, b, granted_to_sides)) {
+        grant(!is_rounding(apart, a, b, granted_to_doubles));
+        return true;
+    }
     const auto number = [](const Sum &sum) {
         const auto it = sum.find({});
         return it == sum.end() ? 0 : std::min(std::fabs(it->second), most_size_at(0));
     };
-    const double slack = gap == apart ? granted_to_sides * std::min(number(a), number(b)) : 0;
-    if (impossible(case_, {gap, true, slack}) && impossible(case_, {add({}, gap, -1), true, slack}))
+    const double numbers = gap == apart ? std::min(number(a), number(b)) : 0;
+    const auto is_at_most = [&](double slack) { // of the gap's size
+        return impossible(case_, {gap, true, slack}) &&
+               impossible(case_, {add({}, gap, -1), true, slack});
+    };
+    if (is_at_most(granted_to_sides * numbers)) {
+        grant(numbers > 0 && !is_at_most(granted_to_doubles * numbers));
         return true;
-    return split_sizes_ && are_equal_on_line(a, b);
+    }
+    return split_sizes_ && are_equal_on_line(a, b); // what that grants is not asked on (2.42)
 }
+
+void Cases::grant(bool granted) { looked_.granted = looked_.granted || granted; }
 
 std::optional<Interval> Cases::range_near(std::uint32_t a, Enclosed &box, double distance) const {
     const Atom &atom = atoms_[a];
@@ -184,7 +195,7 @@ std::optional<Interval> Cases::range_near(std::uint32_t a, Enclosed &box, double
 }
 
 // Beside both sides, at all distances from the origin, or from where the claim's parts lie.
-bool Cases::is_rounding(const Sum &gap, const Sum &a, const Sum &b) {
+bool Cases::is_rounding(const Sum &gap, const Sum &a, const Sum &b, double granted) {
     for (int scale = least_scale; scale <= far_scale; ++scale) {
         looked_.take(64 * (gap.size() + a.size() + b.size()));
         const double distance = distance_at(scale);
@@ -195,8 +206,8 @@ bool Cases::is_rounding(const Sum &gap, const Sum &a, const Sum &b) {
         const auto factor = [&](std::uint32_t f) {
             return KnownFactor{range_near(f, enclosed, distance), atoms_[f].held};
         };
-        if (!is_rounding_beside(gap, a, b, granted_to_sides, granted_to_unknown,
-                                most_size_at(distance), factor))
+        if (!is_rounding_beside(gap, a, b, granted, granted_to_unknown, most_size_at(distance),
+                                factor))
             return false;
     }
     return true;
@@ -416,6 +427,8 @@ bool is_count(const Graph &graph, NodeId root) {
 }
 
 bool is_proved_alike(Graph &graph, const Claim &claim, Looked &looked) {
+    looked.granted = false;
+    looked.places.clear();
     Cases attempt(graph, {}, looked, near_parts(graph, claim));
     const bool holds = attempt.hold_alike(claim);
     looked.cases += attempt.count();
@@ -433,6 +446,7 @@ bool is_proved_as_it_is(Graph &graph, const Claim &claim, Looked &looked, double
             for (const bool sizes : {false, true}) {
                 if (inverses && !met_held) return false;
                 looked.near = near;
+                looked.granted = false;
                 Cases attempt(graph, {sizes, inverses, products, reach}, looked, axes);
                 const bool holds = attempt.hold(claim);
                 looked.cases += attempt.count();
@@ -454,6 +468,7 @@ bool is_proved_as_it_is(Graph &graph, const Claim &claim, Looked &looked, double
 } // namespace
 
 bool is_proved(Graph &graph, const Claim &claim, Looked &looked) {
+    looked.places.clear();
     for (const Inside &inside : seen_from_inside(graph, claim))
         if (is_proved_as_it_is(graph, inside.claim, looked, inside.reach)) return true;
     return is_proved_as_it_is(graph, claim, looked, near_enough);

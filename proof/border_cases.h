@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ir/graph.h"
+#include "proof/carried.h"
 #include "proof/work.h"
 
 #include <algorithm>
@@ -31,6 +32,10 @@ struct Looked {
     }
     bool spent() const { return left == 0 || work.spent(); }
     bool near = false; // a proof holds where no coordinate is above `near_enough` alone (on_line.h)
+    // Of the last proof: were sides taken for equal that differ, though by little? `places`: which of
+    // its numbers are taken for 0, and what they are at most; else it is what the claim is of.
+    bool granted = false;
+    std::vector<Granted> places{};
 };
 
 // A number, or a comparison of such, that is made of signs, steps, truths and constants alone: it

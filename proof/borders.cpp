@@ -75,8 +75,21 @@ std::optional<std::vector<NodeId>> comparisons_of(const Graph &graph, NodeId con
     return out;
 }
 
+bool is_carried_up(const Graph &graph, NodeId field, const Granted &granted, Looked &looked) {
+    const Carried to = is_carried(graph, field, granted, looked.ranges, looked.work);
+    looked.near = looked.near || to == Carried::Near;
+    return to != Carried::Nowhere;
+}
+
+// Is a claim proved, and the field moved by no more than is granted where sides count as equal that
+// differ a little?
+bool is_proved_of(NodeId field, Graph &graph, const Claim &claim, Looked &looked) {
+    return is_proved(graph, claim, looked) &&
+           (!looked.granted || is_carried_up(graph, field, {claim.of}, looked));
+}
+
 // Does `of` have one value on every border of the choice?
-bool meets(Graph &graph, NodeId choice, NodeId of, Looked &looked) {
+bool meets(NodeId field, Graph &graph, NodeId choice, NodeId of, Looked &looked) {
     const ir::Node node = graph[choice];
     std::vector<Claim> claims;
     if (node.op == Op::Select) {
@@ -91,8 +104,9 @@ bool meets(Graph &graph, NodeId choice, NodeId of, Looked &looked) {
         if (node.type != ir::Type::Float) return false;
         claims.push_back({of, choice, {}, graph.arg(choice, 0), graph.number(0)});
     }
-    return std::all_of(claims.begin(), claims.end(),
-                       [&](const Claim &claim) { return is_proved(graph, claim, looked); });
+    return std::all_of(claims.begin(), claims.end(), [&](const Claim &claim) {
+        return is_proved_of(field, graph, claim, looked);
+    });
 }
 
 // `b <= a` of `a < b`, and `b < a` of `a <= b`: it is true where that is not.
@@ -105,8 +119,11 @@ NodeId opposite_of(Graph &graph, NodeId comparison) {
 // through have one value whether it is true or not, where both its sides are equal?
 bool turns_alike(Field &field, NodeId comparison, NodeId root, Looked &looked) {
     Graph &graph = field.graph;
-    return is_proved_alike(
-        graph, {root, comparison, {}, graph.arg(comparison, 0), graph.arg(comparison, 1)}, looked);
+    const Claim claim{root, comparison, {}, graph.arg(comparison, 0), graph.arg(comparison, 1)};
+    return is_proved_alike(graph, claim, looked) &&
+           std::ranges::all_of(looked.places, [&](const Granted &place) {
+               return is_carried_up(graph, root, place, looked);
+           });
 }
 bool turns_unseen(Field &field, NodeId comparison, NodeId root, Looked &looked) {
     Graph &graph = field.graph;
@@ -116,7 +133,8 @@ bool turns_unseen(Field &field, NodeId comparison, NodeId root, Looked &looked) 
         other != field.through.end())
         claim.of = field.joint(claim.of, other->second);
     for (int climb = 0; climb < max_climb && looked.cases < max_cases_of_field; ++climb) {
-        if (graph[claim.of].type != ir::Type::Bool && is_proved(graph, claim, looked)) return true;
+        if (graph[claim.of].type != ir::Type::Bool && is_proved_of(root, graph, claim, looked))
+            return true;
         if (claim.of == root) return false;
         claim.of = field.through.at(claim.of);
     }
@@ -219,7 +237,7 @@ Meeting find_choices(Flattening &context, NodeId root) {
         }
         NodeId of = graph[choice].op == Op::Select ? choice : field.through[choice];
         for (int climb = 0; climb < max_climb && looked.cases < max_cases_of_field; ++climb) {
-            if (meets(graph, choice, of, looked)) {
+            if (meets(root, graph, choice, of, looked)) {
                 out.choices.insert(choice);
                 break;
             }

@@ -87,7 +87,6 @@ bool Cases::vanishes(NodeId id) {
 }
 
 bool Cases::is_0(NodeId id) {
-    constexpr double granted = 5e-7; // of a place's coordinates: constants are floats
     const ir::Node node = graph_[id];
     const auto arg = [&](int k) { return graph_.arg(id, k); };
     if (node.op == Op::Sqrt || node.op == Op::Abs) return is_0(arg(0));
@@ -107,10 +106,16 @@ bool Cases::is_0(NodeId id) {
             size = c ? std::max(size, std::fabs(*c)) : 0;
             if (!c) break;
         }
+        double most = 0; // of a place's coordinates
         for (int i = 0; i < ir::components(graph_[arg(0)].type); ++i) {
             const auto x = value(arg(0), i);
             const auto c = x ? as_constant(*x) : std::nullopt;
-            if (!c || std::fabs(*c) > granted * size) return false;
+            if (!c || std::fabs(*c) > granted_to_sides * size) return false;
+            most = std::max(most, std::fabs(*c));
+        }
+        if (most > granted_to_doubles * size) { // its sign may turn there
+            const double apart = 2 * std::sqrt(ir::components(graph_[arg(0)].type)) * most;
+            looked_.places.push_back({id, node.op == Op::Length ? apart : apart * apart});
         }
         return true;
     }

@@ -114,7 +114,9 @@ class Cases {
     bool is_of_border(NodeId id); // reads a number, no coordinate, that u or v reads
 
     bool are_equal(const Sum &a, const Sum &b);
-    bool is_rounding(const Sum &gap, const Sum &a, const Sum &b); // gap = a - b
+    // gap = a - b, at most `granted` of both
+    bool is_rounding(const Sum &gap, const Sum &a, const Sum &b, double granted);
+    void grant(bool granted); // for the field to be asked what comes of it (carried.h)
     // Of an atom that is no further from the axes' origin than this; `box` has the points there.
     std::optional<Interval> range_near(std::uint32_t a, Enclosed &box, double distance) const;
 
