@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 namespace fathom::lang {
 
@@ -65,11 +64,9 @@ bool is_degrees(std::string_view number) {
 
 // The half of a value that stands in a text.
 std::string half_of(std::string_view value) {
-    double number = 0;
-    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-    const std::string_view unit = value.substr(static_cast<std::size_t>(end - value.data()));
-    if (error == std::errc{} && (unit.empty() || unit == "deg"))
-        return format_shortest(number / 2) + std::string(unit);
+    const std::string_view unit = value.ends_with("deg") ? "deg" : "";
+    if (const auto number = parse_number(value.substr(0, value.size() - unit.size())))
+        return format_shortest(*number / 2) + std::string(unit);
     const bool plain = value.find_first_of(" +-*/%?<>=&|") == std::string_view::npos;
     return plain ? std::string(value) + " / 2" : "(" + std::string(value) + ") / 2";
 }
