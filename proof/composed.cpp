@@ -2,14 +2,11 @@
 
 #include "ir/passes/inline.h"
 #include "ir/passes/walk.h"
-#include "proof/read_through.h"
-#include "proof/zones.h"
+#include "proof/inner_vectors.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <functional>
-#include <iterator>
+#include <unordered_set>
 
 namespace fathom::proof {
 namespace {
@@ -18,211 +15,16 @@ using ir::rounding::infinity;
 using ir::rounding::times;
 using ir::rounding::up;
 
-constexpr std::size_t max_nodes_composed = 700; // of a field that is looked into
-constexpr std::size_t max_coordinates = 28;     // expressions that a vector may be made of
-constexpr std::size_t max_affine_tries = 8, max_warped = 2;
 constexpr std::size_t max_parts = 64;       // of a field
 constexpr std::size_t max_work = 5'000'000; // for one field that is refused
 // … that reads vectors to which noise is added, and no param: else it is asked for many of its values.
 constexpr std::size_t max_work_moved = 10'000'000;
 constexpr std::size_t max_work_loose = 500'000; // … that is not as flat as it might be
 constexpr double loose_part = 1.3; // a bound over the slope seen, above which it is looked at
-constexpr double as_flat = 1e-6;   // of a slope: what is rounded
-constexpr double tight = 1.1; // a bound over the slope seen, with which no other vector is tried
-
-// A vector that an expression reads the point through alone: its components by axis, of which
-// those that are none stand still.
-struct Inner {
-    std::vector<NodeId> replaced;       // expressions, in the order of `components`
-    std::array<NodeId, 3> components{}; // by axis
-};
-
-// The vectors of at most three components that `root` reads the point through.
-class Inners {
-  public:
-    Inners(ir::Graph &graph, ReadThrough &read, NodeId root)
-        : graph_(graph), read_(read), root_(root) {
-        if (!collect()) parts_.clear();
-        std::ranges::sort(parts_); // what others are made of first
-        parts_.resize(std::min(parts_.size(), max_coordinates));
-        std::ranges::reverse(parts_);
-        std::ranges::sort(warped_);
-        std::ranges::reverse(warped_);
-    }
-
-    // Of moved and turned coordinates: many, what is made of others first.
-    std::vector<Inner> affine() {
-        std::vector<Inner> out;
-        choose([&](NodeId id) { return read_.below(id).is_affine; }, max_affine_tries, out);
-        return out;
-    }
-    // Of what is made of folded ones, too: one whose last parts are sums, and the last of all.
-    std::vector<Inner> folded() {
-        std::vector<Inner> out;
-        choose([&](NodeId id) { return is_affine_op(graph_[id].op); }, 1, out);
-        choose([](NodeId) { return true; }, 2, out);
-        return out;
-    }
-    // Of vectors that something else is added to, as noise: the largest.
-    std::vector<Inner> warped() {
-        std::vector<Inner> out;
-        for (const NodeId id : warped_)
-            if (out.size() < max_warped) try_these({id}, out);
-        return out;
-    }
-
-  private:
-    // coordinates and what is not made of folds
-    bool is_warped(NodeId id) {
-        const ir::Node node = graph_[id];
-        if (node.op != Op::Add && node.op != Op::Sub) return false;
-        for (int i = 0; i < 2; ++i)
-            if (read_.below(graph_.arg(id, i)).is_affine &&
-                graph_.reads(graph_.arg(id, 1 - i)).point)
-                return true;
-        return false;
-    }
-
-    // Moved, turned and folded coordinates below the root; false where there is too much to look at.
-    bool collect() {
-        std::vector<NodeId> todo{root_};
-        std::unordered_set<NodeId> seen;
-        while (!todo.empty()) {
-            const NodeId id = todo.back();
-            todo.pop_back();
-            if (!id || !graph_.reads(id).point || !seen.insert(id).second) continue;
-            if (seen.size() > max_nodes_composed) return false;
-            if (read_.is_coordinates(id)) continue;
-            const ir::Type type = graph_[id].type;
-            const bool fits =
-                type == ir::Type::Float || type == ir::Type::Vec2 || type == ir::Type::Vec3;
-            if (fits && id != root_ && !graph_.reads(id).free_vars && read_.below(id).is_fold) {
-                parts_.push_back(id);
-            } else if (ir::is_vector(type) && fits && id != root_ && !graph_.reads(id).free_vars &&
-                       is_warped(id)) {
-                warped_.push_back(id);
-            }
-            todo.insert(todo.end(), graph_.args(id).begin(), graph_.args(id).end());
-            if (graph_[id].op != Op::Loop) continue;
-            const ir::Loop &loop = graph_.loop(ir::LoopId{graph_[id].payload});
-            todo.insert(todo.end(), loop.next.begin(), loop.next.end());
-            todo.insert(todo.end(), {loop.count, loop.condition});
-        }
-        return true;
-    }
-
-    // Adds vectors that are made of such parts, while there are fewer than `most`.
-    void choose(const std::function<bool(NodeId)> &is_such, std::size_t most,
-                std::vector<Inner> &out) {
-        std::vector<NodeId> may;
-        std::ranges::copy_if(parts_, std::back_inserter(may), is_such);
-        const auto size = [&](NodeId id) { return ir::components(graph_[id].type); };
-        std::vector<NodeId> chosen;
-        const auto add = [&](auto &&self, std::size_t from, int left) -> void {
-            if (!chosen.empty() && try_these(chosen, out)) return;
-            for (std::size_t i = from; i < may.size() && left > 0 && out.size() < most; ++i) {
-                if (size(may[i]) > left) continue;
-                chosen.push_back(may[i]);
-                self(self, i + 1, left - size(may[i]));
-                chosen.pop_back();
-            }
-        };
-        add(add, 0, 3);
-    }
-
-    bool try_these(const std::vector<NodeId> &chosen, std::vector<Inner> &out) {
-        int size = 0;
-        unsigned own = 0;
-        for (const NodeId id : chosen) {
-            size += ir::components(graph_[id].type);
-            own |= read_.below(id).coordinates;
-        }
-        const unsigned beside = read_.beside({root_}, {chosen.begin(), chosen.end()});
-        if ((own & beside) != 0 || size > std::popcount(own)) return false;
-        Inner inner;
-        const NodeId point = graph_.point();
-        for (int axis = 0; axis < 3; ++axis)
-            if (beside >> axis & 1)
-                inner.components[std::size_t(axis)] = graph_.component(point, axis);
-        std::size_t axis = 0;
-        for (const NodeId id : chosen)
-            for (int c = 0; c < ir::components(graph_[id].type); ++c) {
-                while (inner.components[axis]) ++axis;
-                inner.components[axis] =
-                    graph_[id].type == ir::Type::Float ? id : graph_.component(id, c);
-            }
-        inner.replaced = chosen;
-        for (const Inner &other : out)
-            if (other.components == inner.components) return true;
-        out.push_back(std::move(inner));
-        return true;
-    }
-
-    ir::Graph &graph_;
-    ReadThrough &read_;
-    NodeId root_;
-    std::vector<NodeId> parts_, warped_;
-};
-
-// `root` with the point in the place of the vector.
-NodeId seen_from(ir::Graph &graph, NodeId root, const Inner &inner) {
-    ir::Substitution map;
-    const NodeId point = graph.point();
-    for (const NodeId id : inner.replaced) {
-        std::vector<NodeId> parts;
-        for (int c = 0; c < ir::components(graph[id].type); ++c) {
-            const NodeId part = graph[id].type == ir::Type::Float ? id : graph.component(id, c);
-            for (int axis = 0; axis < 3; ++axis)
-                if (inner.components[std::size_t(axis)] == part) {
-                    parts.push_back(graph.component(point, axis));
-                    break;
-                }
-        }
-        map[id] = parts.size() == 1 ? parts[0] : graph.make(Op::Make, graph[id].type, parts);
-    }
-    return ir::substitute(graph, root, map);
-}
-
-// Where a vector of slope `slope` takes a region: a box, and a ball about what the middle becomes.
-struct Image {
-    Cell box;
-    Zone ball;
-    bool has_ball = false;
-    Domain domain() const { return {box, has_ball ? &ball : nullptr}; }
-};
-Image image_of(Flattening &context, const Ranges &ranges, NodeId vector, double slope,
-               const Domain &domain) {
-    Image out;
-    const auto to = range_of(context, ranges, vector, domain.box);
-    for (std::size_t i = 0; i < 3; ++i) out.box.p[i] = to[i];
-    Cell middle;
-    Interval radius;
-    if (domain.zone && domain.zone->kind == ir::RegionKind::Ball) {
-        for (std::size_t i = 0; i < 3; ++i) middle.p[i] = domain.zone->center[i];
-        radius = domain.zone->half[0].hi;
-        if (!domain.zone->less.empty()) return out; // the way around a hole is longer
-    } else {
-        Interval square_of;
-        for (std::size_t i = 0; i < 3; ++i) {
-            middle.p[i] = domain.box.p[i].middle();
-            square_of += square(domain.box.p[i] - middle.p[i]);
-        }
-        radius = sqrt(square_of).hi;
-        if (domain.zone) return out;
-    }
-    for (std::size_t i = 0; i < 3; ++i) // the ways from the middle lie in the region
-        if (!(domain.box.p[i].lo <= middle.p[i].lo && middle.p[i].hi <= domain.box.p[i].hi))
-            return out;
-    if (!radius.finite()) return out;
-    const auto center = range_of(context, ranges, vector, middle);
-    out.ball.kind = ir::RegionKind::Ball;
-    for (std::size_t i = 0; i < 3; ++i) out.ball.center[i] = center[i];
-    out.ball.half[0] = Interval(up(times(radius.hi, slope), 4));
-    out.has_ball = true;
-    const Cell around = outer_box(out.ball);
-    for (std::size_t i = 0; i < 3; ++i) out.box.p[i] = meet(out.box.p[i], around.p[i]);
-    return out;
-}
+constexpr double near_by_distance = 1.01; // … at which a search along one or two axes stops
+constexpr double not_as_steep = 0.01;
+constexpr double as_flat = 1e-6; // of a slope: what is rounded
+constexpr double tight = 1.1;    // a bound over the slope seen, with which no other vector is tried
 
 // Noise, and a hash as it is written by hand.
 bool is_noise(const ir::Graph &graph, NodeId id) {
@@ -292,16 +94,36 @@ class Parts {
         return out;
     }
 
+    // By a distance, where that is as near to what is seen as a search in space would come. What has
+    // to be shown not to jump is looked at as it is written first: that costs more than the search.
+    std::optional<FieldBound> by_distance(NodeId field) {
+        constexpr ir::OpSet may_jump{Op::Select, Op::Sign,  Op::Step,  Op::Trunc,
+                                     Op::Floor,  Op::Ceil,  Op::Round, Op::Fract,
+                                     Op::Mod,    Op::Atan2, Op::Loop};
+        const ir::WithoutCalls written = ir::without_calls(graph_, field, max_nodes_composed);
+        if (!written.all || !is_small(written.root, may_jump)) return {};
+        const double enough = budget_.tolerance;
+        budget_.tolerance = near_by_distance;
+        for (const Inner &inner : Inners(graph_, read_, written.root).radial()) {
+            if (!keeps_lengths(inner)) continue;
+            const auto found = through(written.root, inner, slope_of(inner));
+            if (found && found->lipschitz <= std::max(budget_.enough, enough * found->sampled))
+                return found;
+        }
+        return {};
+    }
+
   private:
     // A field is looked at many times over, and the least of that costs as much as its square.
-    bool is_small(NodeId field) const {
+    bool is_small(NodeId field, const ir::OpSet &without = {}) const {
         std::vector<NodeId> todo{field};
         std::unordered_set<NodeId> seen;
         while (!todo.empty() && seen.size() <= max_nodes_composed) {
             const NodeId id = todo.back();
             todo.pop_back();
-            if (seen.insert(id).second)
-                todo.insert(todo.end(), graph_.args(id).begin(), graph_.args(id).end());
+            if (!id || !seen.insert(id).second) continue;
+            if (without[graph_[id].op] && graph_.reads(id).point) return false;
+            todo.insert(todo.end(), graph_.args(id).begin(), graph_.args(id).end());
         }
         return seen.size() <= max_nodes_composed;
     }
@@ -336,6 +158,22 @@ class Parts {
         std::vector<NodeId> parts;
         for (const NodeId part : inner.components) parts.push_back(part ? part : graph_.number(0));
         return graph_.make(Op::Make, ir::Type::Vec3, parts);
+    }
+    // Is its distance as steep as 1, whatever the params? Else the same param may stand in the field to
+    // make good for it, and its slope is not as much for all directions.
+    bool keeps_lengths(const Inner &inner) {
+        Ranges at = ranges_;
+        for (const double way : {0.0, 0.5, 1.0}) {
+            for (std::size_t i = 0; i < at.params.size(); ++i)
+                for (std::size_t c = 0; c < 4; ++c) {
+                    const Interval &x = ranges_.params[i][c];
+                    at.params[i][c] = x.finite() ? x.lo + way * x.width() : x;
+                }
+            const double slope =
+                bound_field(context_, at, inner.distance, domain_, budget_).lipschitz;
+            if (!(slope > 1 - not_as_steep && slope < 1 + as_flat)) return false;
+        }
+        return slope_of(inner) < 1 + as_flat;
     }
     // Of the components that there are: forms of a vector are seen where it has no others.
     double slope_of(const Inner &inner) {
@@ -441,6 +279,12 @@ bool is_near(const ir::Graph &graph, NodeId field, const FieldBound &bound) {
     const ir::Graph::Reads reads = graph.reads(field);
     const double most = reads.time || reads.params ? 1 : loose_part;
     return bound.lipschitz <= most * bound.sampled && !is_moved_by_noise(graph, field);
+}
+
+std::optional<FieldBound> bound_by_distance(Flattening &context, const Ranges &ranges, NodeId field,
+                                            const Domain &domain, const Budget &budget) {
+    if (budget.levels <= 0 || context.graph[field].type != ir::Type::Float) return {};
+    return Parts(context, ranges, domain, budget).by_distance(field);
 }
 
 std::optional<FieldBound> bound_by_parts(Flattening &context, const Ranges &ranges, NodeId field,

@@ -447,6 +447,7 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
     question.add(domain.zone);
     question.add(budget);
     return std::move(question).answer([&](Flattening &own, const Ranges &all, NodeId copy) {
+        if (const auto found = bound_by_distance(own, all, copy, domain, budget)) return *found;
         FieldBound out = bound_of_all(own, all, copy, domain, budget);
         if (out.lipschitz <= budget.enough || is_near(own.graph, copy, out)) return out;
         const bool refused = !std::isfinite(out.lipschitz);

@@ -161,3 +161,77 @@ TEST_CASE("a field that also reads the point itself is no field of what is place
             CHECK(steepest(of + "estimate: 1)\n", 0.5 * i) <= *proved * (1 + 1e-4));
     }
 }
+
+namespace {
+
+// A function g of a distance r and its square rr, and of a coordinate y beside it.
+struct Profile {
+    const char *text;
+    double slope;
+};
+constexpr Profile profiles[] = {
+    {"0.35 - max(1 - rr, 0) ^ 3", 1.7174},
+    {"exp(-rr) + 0.2 * y", 0.8808}, // sqrt(2/e), and 0.2 at right angles to it
+    {"length(vec2(r - 1, y)) - 0.3", 1},
+    {"rr / (1 + rr) - max(0.3 - rr, 0)", 1.7436},
+    {"min(abs(sin(3 * r)) / 3, max(r, abs(y)))", 1},
+};
+// … and where they are measured.
+constexpr const char *spellings[] = {
+    "let rr = dot(q, q)\n  let r = length(q)",
+    "let rr = q.x * q.x + q.y * q.y + q.z * q.z\n  let r = sqrt(rr)",
+};
+constexpr const char *centres[] = {
+    "p",
+    "p - vec3(sin(time), 0.5 * cos(1.7 * time), 0.3)",
+    "vec3(cos(time)*p.x - sin(time)*p.z, p.y, sin(time)*p.x + cos(time)*p.z) - vec3(0.5, 0, 0)",
+    "p - vec3(slider, 0, slider)",
+    "abs(p) - vec3(0.4, slider, 0.2)",
+};
+
+std::string measured(const Profile &profile, const char *centre, const char *spelling, bool axis,
+                     const char *claim) {
+    return "param slider = 0.2 in -1..1\nimplicit(p => {\n  let at = " + std::string(centre) +
+           "\n  let q = at * " +
+           (axis ? "vec3(1, 0, 1)\n  let y = at.y\n  " : "1\n  let y = 0\n  ") + spelling + "\n  " +
+           profile.text + " }, " + claim + ")\n";
+}
+
+} // namespace
+
+TEST_CASE("what reads the point through a distance is as steep as its profile") {
+    for (const Profile &profile : profiles)
+        for (const char *centre : centres)
+            for (const char *spelling : spellings)
+                for (const bool axis : {false, true}) {
+                    const std::string text =
+                        measured(profile, centre, spelling, axis, "within: ball(2)");
+                    INFO(text);
+                    const auto proved = bound(text);
+                    REQUIRE(proved);
+                    CHECK(*proved <= 1.03 * profile.slope);
+                    const std::string free =
+                        measured(profile, centre, spelling, axis, "estimate: 1");
+                    for (const double time : {0.0, 0.7, 4.0})
+                        CHECK(steepest(free, time) <= *proved * (1 + 1e-4));
+                }
+}
+
+TEST_CASE("what reads a distance and what it is of is no field of the distance") {
+    constexpr std::array<const char *, 4> beside{
+        "length(q) + 0.8 * q.x", "dot(q, q) - q.x * q.x + 0.3 * length(q.xy)",
+        "length(q.xz) + sin(2 * length(q))", "max(1 - dot(q, q), 0) * (1 + p.y)"};
+    for (const char *body : beside) {
+        const std::string text = std::string("implicit(p => {\n  let q = p - vec3(sin(time), 0, 0)"
+                                             "\n  ") +
+                                 body + " }, ";
+        INFO(body);
+        const auto proved = bound(text + "within: ball(2))\n");
+        REQUIRE(proved);
+        for (int i = 0; i < 12; ++i)
+            CHECK(steepest(text + "estimate: 1)\n", 0.5 * i) <= *proved * (1 + 1e-4));
+    }
+    for (const char *jumps : {"floor(2 * length(q))", "fract(dot(q, q))"})
+        CHECK_FALSE(bound(std::string("implicit(p => {\n  let q = p - vec3(sin(time), 0, 0)\n  ") +
+                          jumps + " - 0.5 }, within: ball(2))\n"));
+}
