@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -23,6 +25,11 @@ constexpr std::array ways_to_one{1 / 64.0, 1 / 16.0, 1 / 8.0, 1 / 4.0, 3 / 8.0,
                                  1 / 2.0,  5 / 8.0,  3 / 4.0, 7 / 8.0};
 constexpr std::array ways_to_both{1 / 8.0, 1 / 4.0, 1 / 2.0, 3 / 4.0};
 constexpr int most_halvings = 3;
+constexpr std::size_t instructions_apart =
+    8;                                  // a part of those for the bound itself, for each number
+constexpr std::size_t most_joint = 121; // proofs for a formula of several params
+constexpr std::size_t most_joint_work =
+    1'000'000;                         // … as many as take so much, at the present values
 constexpr double pays_from = 1.25;     // times the present bound, from where on a formula is
 constexpr double near_enough = 1.1;    // a line this near the bound in its middle is not halved
 constexpr double allowance = 1 + 1e-5; // what single precision may lose of the formula
@@ -141,17 +148,23 @@ class ParamBounds {
     ParamBounds(Flattening &context, const Ranges &ranges, NodeId field, const Domain &domain,
                 const Budget &budget)
         : context_(context), graph_(context.graph), ranges_(ranges), field_(field), domain_(domain),
-          budget_(budget) {}
+          budget_(budget) {
+        budget_.instructions /= instructions_apart;
+    }
 
     ParamBound find(double whole) {
         ParamBound least;
         const std::vector<Input> params = read_params();
         if (!params.empty() && params.size() <= most_params) {
-            Ranges present = ranges_;
-            for (const Input &param : params)
-                present.params[param.payload][0] = Interval(param.present);
-            if (pays(whole, bound(present, field_)))
-                for (const Input &param : params) add(param, whole, least);
+            const std::size_t left = context_.work.left;
+            const double present = bound(with_present(params), field_);
+            one_proof_ = left - context_.work.left;
+            if (pays(whole, present)) {
+                const double together = add_joint(params, present, least);
+                if (pays(std::min(whole, together), present))
+                    for (const Input &param : params)
+                        add(param, std::min(whole, least.most), least);
+            }
         }
         const std::vector<Input> moving = read_moving();
         if (moving.size() <= most_moving)
@@ -193,6 +206,87 @@ class ParamBounds {
         return out;
     }
 
+    Ranges with_present(const std::vector<Input> &params) const {
+        Ranges out = ranges_;
+        for (const Input &param : params) out.params[param.payload][0] = Interval(param.present);
+        return out;
+    }
+
+    // What several params do together: in `a * sin(b * p.x)` each alone may make the field steep, and
+    // both are mostly small. Where there are too many, those that make it steep while the others stand
+    // where they are. The formula's value at the present values; infinity where there is none.
+    double add_joint(std::vector<Input> inputs, double present, ParamBound &least) {
+        if (proofs_of(inputs) > most_joint) {
+            const Ranges standing = with_present(inputs);
+            std::erase_if(inputs, [&](const Input &input) {
+                Ranges one = standing;
+                one.params[input.payload][0] = input.range;
+                return !pays(bound(one, field_), present);
+            });
+        }
+        const std::size_t proofs = proofs_of(inputs);
+        if (inputs.size() < 2 || proofs > most_joint || proofs * one_proof_ > most_joint_work)
+            return ir::rounding::infinity;
+        std::ranges::stable_partition(
+            inputs, [&](const Input &input) { return AffineIn(graph_, input)(); });
+        Ranges at = ranges_;
+        most_ = 0;
+        const Found found = joint(inputs, at);
+        least = {found.formula, most_};
+        return found.present;
+    }
+    std::size_t proofs_of(const std::vector<Input> &inputs) const {
+        std::size_t out = 1;
+        for (const Input &input : inputs)
+            out *= AffineIn(graph_, input)() ? ends_of_lines(input.range).size()
+                                             : ends_of_pieces(input.range).size() + 1;
+        return out;
+    }
+    struct Found {
+        NodeId formula;
+        double present; // its value at the present values
+    };
+    // Convex in each param that the field is affine in, while the others stand still: of a box its
+    // corners tell. So these come first, and the numbers at the corners are chosen by the others.
+    Found joint(std::span<const Input> inputs, Ranges &at) {
+        if (inputs.empty()) {
+            const double here = bound(at, field_);
+            most_ = std::max(most_, here);
+            return {graph_.number(here), here};
+        }
+        const Input &input = inputs.front();
+        const auto over = [&](Interval values) {
+            at.params[input.payload][0] = values;
+            const Found found = joint(inputs.subspan(1), at);
+            at.params[input.payload][0] = input.range;
+            return found;
+        };
+        Found out;
+        if (!AffineIn(graph_, input)()) {
+            out.formula = pieces(input, [&](double lo, double hi) {
+                const Found here = over(around(input, lo, hi));
+                if (lo == hi && lo == input.present) out.present = here.present;
+                return here.formula;
+            });
+            return out;
+        }
+        const std::vector<double> ends = ends_of_lines(input.range);
+        Found from = over(Interval(ends[0]));
+        for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+            const double a = ends[i], b = ends[i + 1];
+            const Found to = over(Interval(b));
+            const NodeId beyond = graph_.sub(input.value, graph_.number(a));
+            const NodeId way = graph_.mul(beyond, graph_.number(1 / (b - a)));
+            const NodeId rise = graph_.sub(to.formula, from.formula);
+            const NodeId line = graph_.add(from.formula, graph_.mul(way, rise));
+            out.formula = i ? choice(Op::Less, input.value, a, out.formula, line) : line;
+            if (a <= input.present && input.present <= b)
+                out.present = std::lerp(from.present, to.present, (input.present - a) / (b - a));
+            from = to;
+        }
+        return out;
+    }
+
     void add(const Input &input, double whole, ParamBound &least) {
         const std::size_t left = context_.work.left;
         if (!pays(whole, at(input, Interval(input.present)))) return;
@@ -224,14 +318,16 @@ class ParamBounds {
     // Chords of a convex function lie above it between their ends; the greatest of several, everywhere
     // between the first end and the last.
     NodeId by_lines(const Input &input) {
-        const Interval range = input.range;
-        std::vector<double> ends{range.lo, range.hi};
-        if (range.lo < 0 && range.hi > 0) ends = {range.lo, 0, range.hi};
+        const std::vector<double> ends = ends_of_lines(input.range);
         NodeId most;
         for (std::size_t i = 0; i + 1 < ends.size(); ++i)
             add_line(input, ends[i], at(input, Interval(ends[i])), ends[i + 1],
                      at(input, Interval(ends[i + 1])), most_halvings, most);
         return most;
+    }
+    static std::vector<double> ends_of_lines(Interval range) {
+        if (range.lo < 0 && range.hi > 0) return {range.lo, 0, range.hi};
+        return {range.lo, range.hi};
     }
     void add_line(const Input &input, double a, double at_a, double b, double at_b, int halvings,
                   NodeId &most) {
@@ -273,28 +369,32 @@ class ParamBounds {
         out.push_back(range.hi);
         return out;
     }
-    // The bound over the values from `lo` to `hi`, and a little further, for values that are rounded.
-    NodeId over(const Input &input, double lo, double hi) {
-        const Interval wider(std::max(lo - rim(lo, hi), input.range.lo),
-                             std::min(hi + rim(lo, hi), input.range.hi));
-        return graph_.number(at(input, wider));
-    }
-    static double rim(double lo, double hi) {
-        return 1e-6 * std::max(std::fabs(lo), std::fabs(hi));
+    // The values from `lo` to `hi`, and a little further, for values that are rounded.
+    static Interval around(const Input &input, double lo, double hi) {
+        const double rim = 1e-6 * std::max(std::fabs(lo), std::fabs(hi));
+        return {std::max(lo - rim, input.range.lo), std::min(hi + rim, input.range.hi)};
     }
     NodeId by_pieces(const Input &input) {
+        return pieces(input, [&](double lo, double hi) {
+            return graph_.number(at(input, around(input, lo, hi)));
+        });
+    }
+    // One of several formulas, by where the input is: `over` gives that of a piece of its range.
+    NodeId pieces(const Input &input, const std::function<NodeId(double lo, double hi)> &over) {
         const std::vector<double> ends = ends_of_pieces(input.range);
         NodeId out;
         for (std::size_t i = ends.size() - 1; i-- > 0;) {
-            const NodeId here = over(input, ends[i], ends[i + 1]);
+            const NodeId here = over(ends[i], ends[i + 1]);
             out = out ? choice(Op::Less, input.value, ends[i + 1], here, out) : here;
         }
         // Where a slider mostly stands: where the text puts it, and at nothing.
         if (input.op == Op::Param) {
-            out = choice(Op::Equal, input.value, input.present,
-                         over(input, input.present, input.present), out);
-            if (input.range.lo <= 0 && input.range.hi >= 0 && input.present != 0)
-                out = choice(Op::Equal, input.value, 0, over(input, 0, 0), out);
+            const NodeId here = over(input.present, input.present);
+            out = choice(Op::Equal, input.value, input.present, here, out);
+            if (input.range.lo <= 0 && input.range.hi >= 0 && input.present != 0) {
+                const NodeId none = over(0, 0);
+                out = choice(Op::Equal, input.value, 0, none, out);
+            }
         }
         return out;
     }
@@ -309,7 +409,8 @@ class ParamBounds {
     NodeId field_;
     Domain domain_;
     Budget budget_;
-    double most_ = 0; // of the bounds that the formula in hand is made of
+    std::size_t one_proof_ = 0; // work
+    double most_ = 0;           // of the bounds that the formula in hand is made of
 };
 
 } // namespace

@@ -112,6 +112,58 @@ TEST_CASE("bounds that follow params hold at every value, and cost nothing at a 
     }
 }
 
+TEST_CASE("sliders that multiply cost what they do together") {
+    struct Product {
+        const char *name, *text;
+        double (*slope)(const std::array<double, 3> &); // for values of the params, at most
+        double most;                                    // the formula to that, on the average
+    };
+    const Product products[] = {
+        {"height and frequency",
+         "param a = 0.1 in 0..2\nparam b = 3 in 0..20\n"
+         "implicit(p => p.y - a * sin(b * p.x) * cos(b * p.z), within: ball(4))\n",
+         [](const std::array<double, 3> &v) { return std::hypot(1, v[0] * v[1]); }, 1.6},
+        {"three of them",
+         "param a = 0.1 in 0..2\nparam b = 3.0 in 1..20\nparam c = 0.2 in -1..1\n"
+         "implicit(p => length(p) - 2 - a * c * sin(b * p.x), within: ball(4))\n",
+         [](const std::array<double, 3> &v) { return 1 + v[0] * v[1] * std::fabs(v[2]); }, 1.2},
+        {"of both signs",
+         "param a = -0.1 in -2..3\nparam b = 0.5 in -4..5\n"
+         "sphere(2).displace(p => a * b * sin(p.x))\n",
+         [](const std::array<double, 3> &v) { return 1 + std::fabs(v[0] * v[1]); }, 1.01},
+        {"two frequencies",
+         "param a = 0.5 in 0.25..8\nparam b = 0.5 in 0.25..8\n"
+         "implicit(p => length(p) - 2 - sin(a * p.x) * sin(b * p.y) / 4, within: ball(4))\n",
+         [](const std::array<double, 3> &v) { return 1 + std::max(v[0], v[1]) / 4; }, 1.2},
+    };
+    test::Dice dice{9};
+    for (const Product &c : products) {
+        INFO(c.name);
+        driver::Compilation made = driver::compile_text("params.sdf", c.text, {}, {});
+        REQUIRE(made.good());
+        ir::Scene &scene = made.scene;
+        double formulas = 0, slopes = 0;
+        for (int i = 0; i < 200; ++i) {
+            std::array<double, 3> values{};
+            for (std::size_t k = 0; k < scene.params.size(); ++k) {
+                ir::Param &param = scene.params[k];
+                const double way = i % 7 == int(k) ? 0 : i % 7 == int(k) + 3 ? 1 : dice.next();
+                values[k] = param.lo[0] + (param.hi[0] - param.lo[0]) * way;
+                if (param.type == ir::Type::Int) values[k] = std::round(values[k]);
+                param.value[0] = values[k];
+                INFO(param.name << " = " << values[k]);
+            }
+            double bound = 1;
+            for (const ir::ShapeFact &fact : scene.facts)
+                if (fact.lipschitz)
+                    bound = std::max(bound, ir::value_of(scene, fact.lipschitz, 0)[0]);
+            formulas += bound, slopes += c.slope(values);
+            if (i < 60) CHECK(steepest(scene, dice) <= 1.0005);
+        }
+        CHECK(formulas <= c.most * slopes);
+    }
+}
+
 TEST_CASE("bounds for the present values hold in what is lowered for the whole ranges") {
     std::vector<std::pair<std::string, std::string>> scenes;
     for (const Case &c : cases) scenes.emplace_back(c.name, c.text);
