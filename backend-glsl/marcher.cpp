@@ -26,7 +26,7 @@ Values values_of(const MarcherOptions &options) {
     namespace shading = ir::shading;
     const std::string far = "100.0 * max(" + float_literal(options.radius) +
                             ", length(fathom_origin - " + options.center + "))";
-    const bool many_slopes = !options.unit_slope && !options.skip_shading;
+    const bool many_slopes = !options.unit_slope;
     const int surface_taps = many_slopes ? 5 : 4;
     return {
         {"BOXED", flag(options.boxed)},
@@ -66,6 +66,10 @@ Values values_of(const MarcherOptions &options) {
         {"FLOAT_SLACK", float_literal(shading::float_slack)},
         {"NORMAL_SLACK", float_literal(shading::normal_slack)},
         {"MIN_SLOPE", float_literal(shading::min_slope)},
+        {"FAINT", float_literal(shading::faint)},
+        {"BESIDE_ARMS", float_literal(shading::beside)},
+        {"BESIDE_REACH", float_literal(shading::beside_reach)},
+        {"BESIDE_LOOKS", fmt::to_string(shading::beside_looks)},
         {"RELAXATION", float_literal(shading::relaxation)},
         {"FLATTEST", float_literal(shading::flattest)},
         {"NEARER_PART", float_literal(shading::nearer)},
@@ -121,7 +125,7 @@ Values values_of(const MarcherOptions &options) {
         {"FINE", float_literal(shading::penumbra_fine)},
         {"UNSEEN", float_literal(shading::nowhere)},
         {"SURFACE_TAPS", fmt::to_string(surface_taps)},
-        {"ALL_TAPS", fmt::to_string(surface_taps + shading::occlusion_samples)},
+        {"OCCLUSION_TAPS", fmt::to_string(shading::occlusion_samples)},
         {"OCCLUSION_TOTAL", float_literal(1 - std::ldexp(1.0, -shading::occlusion_samples))},
         {"OCCLUSION_REACH", float_literal(shading::occlusion_reach)},
         {"OCCLUSION_SAMPLES", float_literal(float{shading::occlusion_samples})},

@@ -25,6 +25,13 @@
 //   e = (1,-1,-1), (-1,-1,1), (-1,1,-1), (1,1,1), each / sqrt(3)
 //   (the sum of e e^T is 4/3 of the identity). In a loop, so that the shader holds g once.
 //   normal = gradient/|gradient|; where that is 0, minus the ray's direction.
+//   A field of odd order, as u^3, or u^3 - v^3 where both are 0, has no gradient on its surface, and
+//   the taps' differ as the corners do, not as the surface. Where slopes differ and |gradient| is below
+//   `faint`, the normal is that of the surface about p: along the ray and along rays that are `beside`
+//   arms away, to and fro along two axes a and b across it, a change of sign within beside_reach times
+//   that is halved; r_a is how much further it is to than at the ray itself, over `beside` arms, a mean
+//   of to and (negated) fro where both are found, and normal = a*r_a + b*r_b - dir, normalised. Where
+//   r_a or r_b is not found it is the gradient's.
 //
 // TRUE DISTANCE (semantics.md, 10), which knows of no bound
 //   near(p, h) = g(p) where the slope of g is 1 almost everywhere (`Frame::unit_slope`),
@@ -241,6 +248,9 @@ inline constexpr float arm = 0.125f;  // tolerances
 inline constexpr float lift = 2;      // arms
 inline constexpr float widest = 0.2f; // pixels
 inline constexpr float min_slope = 1.0f / 1024;
+inline constexpr float faint = 1.0f / 32;
+inline constexpr float beside = 4, beside_reach = 32; // arms; and times that
+inline constexpr int beside_looks = 16;               // at both ends, and halvings
 inline constexpr float relaxation =
     0.9f; // performance.md, 2: best of those measured on scenes with L = 1
 inline constexpr float flattest = 1e-3f;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 namespace fathom::cpu {
 
@@ -29,6 +30,78 @@ struct Points {
     std::size_t size() const { return ray.size(); }
 };
 
+// Nothing, then two axes across a ray, to and fro.
+Vec beside(std::size_t i, const Vec &direction) {
+    const Vec a = glm::normalize(
+        glm::cross(direction, std::fabs(direction.x) < 0.6f ? Vec(1, 0, 0) : Vec(0, 1, 0)));
+    if (i == 0) return Vec(0);
+    return (i % 2 == 1 ? 1.0f : -1.0f) * (i < 3 ? a : glm::cross(direction, a));
+}
+
+// How far along rays beside these points a change of sign is, in arms of `beside`; NaN where none is.
+std::vector<float> find_beside(Worker &worker, std::span<const RayState> rays, const Points &at,
+                               std::span<const std::size_t> which, std::size_t side) {
+    constexpr float reach = shading::beside_reach;
+    const std::size_t count = which.size();
+    std::vector<float> low(count, -reach), high(count, reach), here(count), f(count);
+    const auto evaluate = [&] {
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t k = which[i];
+            const Vec &direction = rays[at.ray[k]].direction;
+            worker.points.set(0, i,
+                              at.p[k] + shading::beside * at.h[k] *
+                                            (beside(side, direction) + here[i] * direction));
+        }
+        shaded_values(worker, worker.points, f.data(), count);
+    };
+    std::vector<char> found(count);
+    here = low;
+    evaluate();
+    for (std::size_t i = 0; i < count; ++i) found[i] = f[i] > 0;
+    here = high;
+    evaluate();
+    for (std::size_t i = 0; i < count; ++i) found[i] = found[i] && !(f[i] > 0);
+    for (int look = 2; look < shading::beside_looks; ++look) {
+        for (std::size_t i = 0; i < count; ++i) here[i] = 0.5f * (low[i] + high[i]);
+        evaluate();
+        for (std::size_t i = 0; i < count; ++i) (f[i] > 0 ? low : high)[i] = here[i];
+    }
+    for (std::size_t i = 0; i < count; ++i)
+        here[i] = found[i] ? 0.5f * (low[i] + high[i]) : std::numeric_limits<float>::quiet_NaN();
+    return here;
+}
+
+// The normals of the surface beside points without a gradient (ir/shading.h, GRADIENT), where it is
+// found.
+void look_beside(Worker &worker, std::span<const RayState> rays, Points &at,
+                 std::vector<std::size_t> which) {
+    std::vector<float> middle = find_beside(worker, rays, at, which, 0);
+    for (std::size_t i = which.size(); i-- > 0;)
+        if (std::isnan(middle[i])) {
+            which.erase(which.begin() + std::ptrdiff_t(i));
+            middle.erase(middle.begin() + std::ptrdiff_t(i));
+        }
+    if (which.empty()) return;
+    std::vector<std::array<float, 2>> rise(which.size()), rises(which.size());
+    for (std::size_t side = 1; side < 5; ++side) {
+        const std::vector<float> to = find_beside(worker, rays, at, which, side);
+        const std::size_t axis = (side - 1) / 2;
+        for (std::size_t i = 0; i < which.size(); ++i) {
+            if (std::isnan(to[i])) continue;
+            rise[i][axis] += (side % 2 == 1 ? 1.0f : -1.0f) * (to[i] - middle[i]);
+            rises[i][axis] += 1;
+        }
+    }
+    for (std::size_t i = 0; i < which.size(); ++i) {
+        const Vec &direction = rays[at.ray[which[i]]].direction;
+        if (!(rises[i][0] * rises[i][1] > 0)) continue;
+        at.even[which[i]] = 1;
+        at.n[which[i]] =
+            glm::normalize(rise[i][0] / rises[i][0] * beside(1, direction) +
+                           rise[i][1] / rises[i][1] * beside(3, direction) - direction);
+    }
+}
+
 void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
     std::vector<Vec> gradient(at.size()), above(at.size());
     for (std::size_t k = 0; k < at.size(); ++k)
@@ -49,6 +122,11 @@ void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
         at.n.push_back(size > 0 ? gradient[k] / size : -rays[at.ray[k]].direction);
         at.even.push_back(clamp(size / (at.slope[k] * shading::flat_from), shading::min_slope, 1));
     }
+    if (frame.exact || frame.unit_slope) return;
+    std::vector<std::size_t> faint;
+    for (std::size_t k = 0; k < at.size(); ++k)
+        if (length(gradient[k]) < shading::faint) faint.push_back(k);
+    if (!faint.empty()) look_beside(worker, rays, at, std::move(faint));
 }
 
 constexpr std::size_t paint_row = 1, point_row = 2,

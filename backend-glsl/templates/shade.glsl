@@ -11,8 +11,12 @@ $# even: less than 1 at an edge.
     float slope = 0.0, even = 1.0;
 $if MANY_SLOPES
     float bent = 0.0, own = 1.0; // what rises as the surface itself does is open
+$# Of the surface beside the point: how far along the ray it is looked at, in BESIDE_ARMS.
+    float low = 0.0, high = 0.0, here = -$BESIDE_REACH, middle = 0.0;
+    bool found = false;
+    vec2 rise = vec2(0.0), rises = vec2(0.0); // by axis: what was found, and how often
 $end
-    int taps = $SURFACE_TAPS;
+    int surface = $SURFACE_TAPS, samples = 0; // points about it, and along the normal
 $if !SKIP_SHADING
     fathom_Lighting look = fathom_lighting();
     float open = 1.0;
@@ -20,30 +24,40 @@ $if !SKIP_SHADING
     float reach = look.occlusion_reach;
     if (!(reach > 0.0)) reach = $OCCLUSION_REACH * fathom_extent * (fathom_orthographic != 0 ? 1.0 : fathom_focus);
     reach /= $OCCLUSION_SAMPLES;
-    if (look.ambient_occlusion > 0.0) taps = $ALL_TAPS;
+    if (look.ambient_occlusion > 0.0) samples = $OCCLUSION_TAPS;
 $if PASSES
-    if (fathom_light_kept >= 0) taps = $SURFACE_TAPS; // the colour is known
+    if (fathom_light_kept >= 0) samples = 0; // the colour is known
 $end
 $end
-$# The gradient's four points, and their middle where slopes differ. Then, along the normal, the occlusion's five.
+$# The gradient's four points, their middle where slopes differ, and the surface beside where it is faint. Then,
+$# along the normal, the occlusion's five.
 $if APART
-    for (int i = $ZERO; i < $SURFACE_TAPS$AND_PRESENT; ++i) {
+    for (int i = $ZERO; i < surface$AND_PRESENT; ++i) {
         vec3 e = fathom_corner(i & 3) * float(i < 4);
-        float f = $SHADED(above + h * e);
+        vec3 place = above + h * e;
+$if MANY_SLOPES
+        if (i >= $SURFACE_TAPS)
+            place = p + $BESIDE_ARMS * h * (fathom_beside((i - $SURFACE_TAPS) / $BESIDE_LOOKS, direction) + here * direction);
+$end
+        float f = $SHADED(place);
         {
 $include surface_tap
         }
     }
-    int done = $SURFACE_TAPS;
+    int done = surface;
 $else
     int done = 0;
 $end
 $if !SKIP_SHADING
-    for (int i = $ZERO + done; i < taps$AND_PRESENT; ++i) {
-        bool outward = i >= $SURFACE_TAPS;
-        float away = reach * float(i - $SURFACE_TAPS + 1), free = $NEARLY * away;
+    for (int i = $ZERO + done; i < surface + samples$AND_PRESENT; ++i) {
+        bool outward = i >= surface;
+        float away = reach * float(i - surface + 1), free = $NEARLY * away;
         vec3 e = fathom_corner(i & 3) * float(i < 4);
         vec3 place = outward ? p + away * n : above + h * e;
+$if MANY_SLOPES
+        if (!outward && i >= $SURFACE_TAPS)
+            place = p + $BESIDE_ARMS * h * (fathom_beside((i - $SURFACE_TAPS) / $BESIDE_LOOKS, direction) + here * direction);
+$end
         float f = $SHADED(place);
         if (!outward) {
 $include surface_tap

@@ -394,3 +394,20 @@ TEST_CASE("a ball as large as a world has no grain") {
             rough += std::abs(byte(picture, x, y, 1) - byte(picture, x - 1, y, 1)) > 3;
     CHECK(rough <= few);
 }
+
+TEST_CASE("where a field has no gradient on its surface, that is shaded as it lies") {
+    const std::string before = "camera(at: [1, 1.6, 4], look_at: [0, 0, 0], fov: 40deg)\n"
+                               "lighting(shadow_darkness: 0, ambient_occlusion: 0)\n"
+                               "implicit(p => ",
+                      after = ", within: ball(1.6))\n";
+    const std::array<std::pair<const char *, const char *>, 4> fields{{
+        {"(length(p) - 1) ^ 3", "length(p) - 1"},
+        {"(length(p) - 1) ^ 3 - (0.3 * p.y) ^ 3", "length(p) - 1 - 0.3 * p.y"},
+        {"(length(p) - 1) * abs(length(p) - 1)", "length(p) - 1"},
+        {"(0.9 * p.x + 0.3 * p.y) ^ 5 - (0.4 * p.z) ^ 5", "0.9 * p.x + 0.3 * p.y - 0.4 * p.z"},
+    }};
+    for (const auto &[cubed, plain] : fields) {
+        INFO(cubed);
+        CHECK(different(drawn(before + cubed + after), drawn(before + plain + after)) <= 12 * few);
+    }
+}
