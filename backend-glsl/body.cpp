@@ -6,6 +6,7 @@
 #include "backend-glsl/clone_loops.h"
 #include "backend-glsl/module.h"
 #include "backend-glsl/schedule.h"
+#include "backend-glsl/turns.h"
 #include "ir/powers.h"
 
 #include <algorithm>
@@ -206,7 +207,7 @@ class Writer {
             name_[loop.vars[k]] = name;
         }
         const std::string i = names_.numbered('i');
-        const int stride = iterations_together(loop);
+        const int stride = turns_together(graph_, loop);
         std::string turn_end; // a turn's last line, of turns too many
         if (const auto pruned = module_.pruned.find(graph_[id].payload);
             pruned != module_.pruned.end()) {
@@ -278,7 +279,8 @@ class Writer {
         const std::string before = names_.numbered(prefix_of(type));
         line(indent,
              fmt::format("for (int {} = 0; {} < {}; {} += {}) for (int {} = 0; {} < {}; ++{}) {{",
-                         group, group, count, group, max_together, turn, turn, max_together, turn));
+                         group, group, count, group, most_together, turn, turn, most_together,
+                         turn));
         line(indent + 1, "int " + i + " = min(" + group + " + " + turn + ", " + count + " - 1);");
         line(indent + 1, std::string(glsl_type(type)) + " " + before + " = " + carried + ";");
         return "if (" + group + " + " + turn + " >= " + count + ") " + carried + " = " + before +
@@ -302,19 +304,6 @@ class Writer {
         line(indent + 1, std::string(glsl_type(type)) + " " + before + " = " + carried + ";");
         return "if (" + group + " + " + turn + " >= " + list + ".y) " + carried + " = " + before +
                ";";
-    }
-
-    // A long loop runs in groups of a few turns. Drivers write such a short inner loop out, which
-    // is faster, and keeps within the 65,536 turns, of all loops together, after which Mesa's
-    // llvmpipe ends a shader. 1: no groups; 0: groups of max_together that do not fill the loop,
-    // where no large ones do.
-    static constexpr int max_together = 8;
-    int iterations_together(const ir::Loop &loop) const {
-        const auto count = graph_.as_number(loop.count);
-        if (!count || loop.condition || *count < 32) return 1;
-        int stride = max_together;
-        while (static_cast<int>(*count) % stride != 0) --stride;
-        return stride < max_together / 2 && loop.vars.size() == 1 ? 0 : stride;
     }
 
     // Whether `root` reads statement `s` (itself, or through other nodes of the same loop).

@@ -1,6 +1,9 @@
 #include "backend-glsl/turns.h"
 
+#include "ir/passes/cost.h"
+
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -12,7 +15,8 @@ using ir::Op;
 namespace {
 
 constexpr int grouped_from = 32; // turns of a loop; drivers may write out what is shorter
-constexpr double group = 4;      // turns, or more
+// Mesa writes a loop out up to 832 instructions in all: half of an eighth of these, as cost.h has them.
+constexpr double most_of_short_body = 1.5;
 // Of the helpers that look into the 27 cells around a point.
 constexpr double neighbors = 3 * (1 + 3 * (1 + 3));
 
@@ -55,11 +59,15 @@ class Counter {
         std::vector<NodeId> body = loop.next;
         body.push_back(loop.condition);
         const double within = below(body);
-        if (loop.condition || !graph_.as_number(loop.count))
-            return loops_[index] = loop.max_count * (1 + within);
-        if (loop.max_count < grouped_from)
-            return loops_[index] = loop.max_count * ((written_out_ ? 0 : 1) + within);
-        return loops_[index] = loop.max_count / group * (1 + group * within);
+        if (written_out_ && !loop.condition && loop.max_count < grouped_from)
+            return loops_[index] = loop.max_count * within;
+        const int stride = turns_together(graph_, loop);
+        if (stride == 1) return loops_[index] = loop.max_count * (1 + within);
+        const double groups = std::ceil(loop.max_count / double(stride ? stride : most_together));
+        double cost = 0;
+        for (NodeId next : loop.next) cost += ir::cost_of(graph_, next);
+        const bool short_body = within == 0 && cost <= most_of_short_body;
+        return loops_[index] = groups + (short_body ? 0 : loop.max_count * (1 + within));
     }
 
     const Module &module_;
@@ -69,6 +77,14 @@ class Counter {
 };
 
 } // namespace
+
+int turns_together(const ir::Graph &graph, const ir::Loop &loop) {
+    const auto count = graph.as_number(loop.count);
+    if (!count || loop.condition || *count < grouped_from) return 1;
+    int stride = most_together;
+    while (static_cast<int>(*count) % stride != 0) --stride;
+    return stride < most_together / 2 && loop.vars.size() == 1 ? 0 : stride;
+}
 
 Turns turns_of(const Module &module) {
     const ir::Scene &scene = module.scene;

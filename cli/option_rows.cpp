@@ -64,7 +64,7 @@ std::vector<OptionRow> picture_rows(RenderCommand &command) {
     return {
         {"--size", "WxH", "size in pixels, 1280x720 unless said",
          [&](const std::string &word) { return read_pair(word, command.width, command.height); }},
-        {"--backend", "WHICH", "gl, cpu, or auto: gl where a context can be had",
+        {"--backend", "WHICH", "gl, cpu, or auto: gl where there is a card",
          one_of(command.backend, backends)},
         {"--time", "T", "seconds; with --frames, when frame 0 is",
          [&](const std::string &word) {

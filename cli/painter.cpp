@@ -59,6 +59,10 @@ Exit begin(v1::GlPainter &gl, const RenderCommand &command, Terminal &terminal) 
         terminal.say(fmt::format("fathom: no picture by GL: {}; --backend cpu needs none", why));
         return device_error;
     }
+    if (command.backend == Backend::Auto && gl.is_software() && !command.cache) {
+        gl = v1::GlPainter(); // the processor draws quicker by itself
+        return done;
+    }
     if (std::max(command.width, command.height) <= gl.largest_side()) return done;
     if (command.backend == Backend::Auto) {
         gl = v1::GlPainter();

@@ -33,7 +33,10 @@ bool is_undecided(const v1::Picture &painted, const std::string &out, const Rend
     if (painted.undecided_shadows > 0)
         what += fmt::format("{}{} shadow rays stay undecided and darken by what they met so far",
                             what.empty() ? "" : "; ", painted.undecided_shadows);
-    terminal.say(fmt::format("fathom: {}: {}; --max-steps N gives them more steps{}", out, what,
+    terminal.say(fmt::format("fathom: {}: {}; --max-steps N gives them more steps{}{}", out, what,
+                             command.backend == Backend::Gl
+                                 ? ", and --backend cpu has no limit on the turns of loops"
+                                 : "",
                              command.strict ? ". Nothing is written (--strict)" : ""));
     return command.strict;
 }

@@ -24,7 +24,7 @@ constexpr double most_loop_turns = 50000;
 constexpr int kept_textures = static_cast<int>(std::tuple_size_v<decltype(Pass::kept)>);
 constexpr int places_textures = 1;                 // behind them
 constexpr const char *kept_name = "fathom_kept_0"; // stands in texts by passes
-constexpr int uncounted_steps = 128, fewest_turns = 16, most_turns = 1024;
+constexpr int uncounted_steps = 240, fewest_turns = 16, most_turns = 1024;
 // Of a text that begins rays alone, which says itself where loops were ended (entry.glsl).
 constexpr int most_at_first = 4096;
 constexpr double loops_of_march = 2; // a step's own

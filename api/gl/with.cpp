@@ -249,6 +249,12 @@ bool GlPainter::is_open() const { return impl_ != nullptr; }
 bool GlPainter::is_cached() const { return impl_ && impl_->cache; }
 double GlPainter::driver_seconds() const { return impl_ ? impl_->driver_seconds : 0; }
 
+bool GlPainter::is_software() const {
+    return inside(
+        impl_.get(), [](Impl &) { return gl::is_software(); },
+        [](const Diagnostic &) { return false; });
+}
+
 int GlPainter::largest_side() const {
     return inside(
         impl_.get(), [](Impl &) { return gl::largest_side(); },

@@ -19,6 +19,7 @@ constexpr const char *why = "this Fathom was built without OpenGL (-DFATHOM_GL=O
 std::string GlPainter::open() { return why; }
 bool GlPainter::is_open() const { return false; }
 std::string GlPainter::describe() const { return ""; }
+bool GlPainter::is_software() const { return false; }
 int GlPainter::largest_side() const { return 0; }
 std::string GlPainter::text(const Scene &) const { return ""; }
 std::vector<Diagnostic> GlPainter::use(const Scene &, const GlOptions &) {

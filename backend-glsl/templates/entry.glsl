@@ -24,14 +24,16 @@ $if CACHED
 $include cache_output
 $end
 $if PASSES
-#ifdef FATHOM_BEGINS
 $# Mesa's llvmpipe ends all loops of a shader after 65,536 turns and says nothing; from then on none turns twice.
     int turns = 0;
     for (int i = $ZERO; i < 2; ++i) ++turns;
-    if (turns < 2) { // the ray begins anew, in passes of fewer steps
-        fathom_left = 1.0;
+    if (turns < 2) {
+#ifdef FATHOM_BEGINS
+        fathom_left = 1.0; // the ray begins anew, in passes of fewer steps
         fathom_color = vec4(0.0);
-    }
+#else
+        fathom_left = 0.25; // it stays undecided
 #endif
+    }
 $end
 }

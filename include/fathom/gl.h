@@ -59,6 +59,7 @@ class FATHOM_API GlPainter {
     std::string open();
     bool is_open() const;
     std::string describe() const; /**< the renderer's and the version's names */
+    bool is_software() const;     /**< draws on the processor, where `draw` is quicker */
     int largest_side() const;     /**< of a picture, in pixels; 0 where it is not open */
 
     /** The text that scenes are drawn by here, before the driver takes it. Empty where the scene has
