@@ -221,9 +221,9 @@ class Cases {
     std::optional<Sum> dot(NodeId a, NodeId b);
 
     std::optional<Sum> value_of(NodeId id, int i);
-    static constexpr ir::OpSet by_component_{Op::Neg, Op::Add, Op::Sub, Op::Mul,   Op::Div,
-                                             Op::Min, Op::Max, Op::Abs, Op::Clamp, Op::Sign,
-                                             Op::Mix, Op::Pow, Op::Step};
+    static constexpr ir::OpSet by_component_{Op::Neg, Op::Add, Op::Sub,  Op::Mul,       Op::Div,
+                                             Op::Min, Op::Max, Op::Abs,  Op::Clamp,     Op::Sign,
+                                             Op::Mix, Op::Pow, Op::Step, Op::Smoothstep};
 
     std::optional<Sum> component(NodeId id, int i, Op op, const Sum &a, const Sum &b, const Sum &c);
 

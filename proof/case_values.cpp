@@ -1,5 +1,5 @@
-// What nodes are in a case: sums of products, by component. A choice that is met has gone one way in
-// the case, or splits it.
+// What nodes are in a case: sums of products, by component. A choice has gone one way, or splits it.
+#include "ir/semantics.h"
 #include "proof/case_search.h"
 #include "proof/continuity.h"
 #include "proof/exact.h"
@@ -18,11 +18,10 @@ constexpr int max_depth_of_cases = 200, max_squares = 12;
 
 // How often one sum is the other, above 0; else 0. Of what is below a root: nearly is not enough.
 double multiple_of(const Sum &a, const Sum &b) {
-    constexpr double granted = 1e-10;
     if (a.size() != b.size() || a.empty()) return 0;
     const double times = a.begin()->second / b.begin()->second;
     for (auto x = a.begin(), y = b.begin(); x != a.end(); ++x, ++y)
-        if (x->first != y->first || !(std::fabs(x->second / (times * y->second) - 1) < granted))
+        if (x->first != y->first || !(std::fabs(x->second / (times * y->second) - 1) < 1e-10))
             return 0;
     return times;
 }
@@ -419,8 +418,7 @@ std::optional<Sum> Cases::component(NodeId id, int i, Op op, const Sum &a, const
     if (op == Op::Abs) return size_of(id, Sizes + i, a);
     if (op == Op::Div) {
         if (const auto d = as_constant(b); d && *d != 0) return add({}, a, 1 / *d);
-        if (!by_inverses_)
-            if (const auto q = quotient(a, b)) return q;
+        if (const auto q = by_inverses_ ? std::nullopt : quotient(a, b)) return q;
         if (const auto over = by_inverses_ ? inverse(b) : std::nullopt) return times(a, *over);
         return unknown(id, i);
     }
@@ -439,6 +437,11 @@ std::optional<Sum> Cases::component(NodeId id, int i, Op op, const Sum &a, const
         std::optional<Sum> out = a;
         for (int k = 1; out && k < int(*n); ++k) out = times(*out, a);
         return out;
+    }
+    if (op == Op::Smoothstep) { // a number on the border, as at one of its ends
+        const auto from = as_constant(a), to = as_constant(b), x = as_constant(c);
+        return from && to && x && *from < *to ? constant(ir::sem::smoothstep(*from, *to, *x))
+                                              : unknown(id, i);
     }
     if (op == Op::Step) { // step(edge, x)
         const Sum gap = add(b, a, -1);

@@ -166,6 +166,7 @@ class ParamBounds {
                         add(param, std::min(whole, least.most), least);
             }
         }
+        budget_.instructions *= instructions_apart; // of the time there are few inputs
         const std::vector<Input> moving = read_moving();
         if (moving.size() <= most_moving)
             for (const Input &input : moving) add(input, std::min(whole, least.most), least);
