@@ -372,7 +372,7 @@ void Builder::trailing(Index first, Index last) {
         !may_be_declared(name->text)) {
         const Index open = match(first - 1);
         const Span head{id_, token(open - 1).begin, token(first - 1).end};
-        std::string chain = transform_text(open - 1); // none of `render(…) { … }`
+        std::string chain = transform_text(open - 1, false); // none of `render(…) { … }`
         if (!chain.empty()) chain.insert(0, ".");
         Diagnostic &d = foreign(head, "a transform stands behind the shape that it moves");
         if (const auto lost = lost_of_transform(open - 1); !lost.empty()) d.note(std::string(lost));

@@ -36,6 +36,10 @@ bool is_one_of(std::string_view word, const std::array<std::string_view, N> &wor
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+// Half of a value that stands in a text; a shape of OpenSCAD that has two dimensions.
+std::string half_of(std::string_view value);
+bool is_flat_shape(std::string_view name);
+
 // Thrown by Builder::fail, caught around each statement: reading goes on behind it. Never leaves
 // parse().
 struct Abandon {};
@@ -300,8 +304,27 @@ class Builder {
     // Transforms of OpenSCAD (foreign_transforms.cpp).
     std::string value_text(Index from, Index to) const;
     std::string degrees_text(Index from, Index to) const;
-    std::string transform_text(Index name) const;
+    std::string transform_text(Index name, bool flat) const;
+    std::string cut_of_revolution(Index name) const;
     std::string_view lost_of_transform(Index name) const;
+    // Solids of OpenSCAD (foreign_solids.cpp).
+    struct Solid {
+        std::string text;            // as it is written here
+        std::string_view told, lost; // how theirs differs, and what ours has not
+        bool is_centered = false;
+    };
+    Solid solid_of(Index name, bool certain) const;
+    bool of_openscad(Index first);
+    bool is_openscad() const;
+    bool foreign_solid(Index first);
+    struct ModuleBody {
+        bool takes_shapes = false, has_many = false;
+    };
+    ModuleBody module_body(Index open) const;
+    void module_head(Index first, Index after, std::string &head) const;
+    bool foreign_minkowski(Index first);
+    bool foreign_modifier(Index at);
+    void forget_arguments(Index open) const;
     std::string lisp_value(Index &at) const;
     std::string lisp_part(Index at, Index end) const;
     std::string lisp_form(Index open) const;

@@ -281,18 +281,24 @@ bool Builder::where_clause(Index first, Index at) {
     return true;
 }
 
-// OpenSCAD's `ring() sphere(1)`, at the shape.
+// OpenSCAD's `ring() sphere(1)` and `ring(6) sphere(1)`, at the shape.
 bool Builder::shape_behind_call(Index first, Index at) {
-    if (kind(first) != Tok::Name || kind(first + 1) != Tok::Open || at != first + 3 ||
-        kind(first + 2) != Tok::Close || kind(at) != Tok::Name || kind(at + 1) != Tok::Open ||
-        token(at).first_on_line)
+    if (kind(first) != Tok::Name || kind(first + 1) != Tok::Open || at != match(first + 1) + 1 ||
+        kind(at) != Tok::Name || kind(at + 1) != Tok::Open || token(at).first_on_line ||
+        (at > first + 3 && !may_be_declared(text(first))))
         return false;
     const Index end = statement_end(first);
-    const std::string shape(text(token(at).begin, token(end - 1).end));
-    foreign(span(first, first + 2), "what a function is given stands in its parentheses")
-        .help("write " + in_code(std::string(text(first)) + "(" + shape + ")"),
-              {{{id_, token(first + 2).begin, token(at).begin}, ""},
-               {{id_, token(end - 1).end, token(end - 1).end}, ")"}});
+    const Solid solid = match(at + 1) + 1 == end ? solid_of(at, true) : Solid{};
+    if (!solid.text.empty()) forget_arguments(at + 1);
+    const std::string shape =
+        solid.text.empty() ? std::string(text(token(at).begin, token(end - 1).end)) : solid.text;
+    const bool empty = at == first + 3;
+    const std::string head(text(token(first).begin, token(at - 1).end));
+    const std::string written =
+        empty ? std::string(text(first)) + "(" + shape + ")" : head + " { " + shape + " }";
+    foreign(span(first, at - 1), empty ? "what a function is given stands in its parentheses"
+                                       : "the shapes that a function is given stand in braces")
+        .help("write " + in_code(written), {{span(first, end - 1), written}});
     return true;
 }
 

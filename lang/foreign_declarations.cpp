@@ -313,6 +313,7 @@ void Builder::foreign_function(Index first, Index name, bool has_type) {
         after += 2;
     } else if (has_type && !is_their_own(text(name - 1)))
         head += " -> " + std::string(text(name - 1));
+    module_head(first, after, head);
     std::vector<Edit> edits{{span(first, after - 1), head}};
     if (kind(after) == Tok::End && kind(after + 1) == Tok::StrayBrace && text(after) != ";") {
         edits.push_back({{id_, token(after - 1).end, token(after + 1).end}, " {"});

@@ -80,12 +80,7 @@ bool Builder::foreign_operand(Wanted wanted, Index at) {
             .help("leave it away", {{span(at), ""}});
         return true;
     }
-    if (wanted == Wanted::Statement && (found == Tok::Star || found == Tok::Percent) &&
-        kind(at + 1) == Tok::Name) {
-        foreign(span(at), "there are no modifiers of shapes")
-            .help("leave it away; what `//` stands before is not drawn", {{span(at), ""}});
-        return true;
-    }
+    if (wanted == Wanted::Statement && foreign_modifier(at)) return true;
     if (found == Tok::Fn) {
         Diagnostic &d = foreign(span(at), "a function without a name is written `p => …`");
         if (kind(at + 1) == Tok::LambdaOpen)

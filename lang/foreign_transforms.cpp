@@ -62,15 +62,6 @@ bool is_degrees(std::string_view number) {
     return number.find_first_not_of("0123456789.") == std::string_view::npos;
 }
 
-// The half of a value that stands in a text.
-std::string half_of(std::string_view value) {
-    const std::string_view unit = value.ends_with("deg") ? "deg" : "";
-    if (const auto number = parse_number(value.substr(0, value.size() - unit.size())))
-        return format_shortest(*number / 2) + std::string(unit);
-    const bool plain = value.find_first_of(" +-*/%?<>=&|") == std::string_view::npos;
-    return plain ? std::string(value) + " / 2" : "(" + std::string(value) + ") / 2";
-}
-
 } // namespace
 
 bool is_foreign_transform(std::string_view name) {
@@ -132,32 +123,60 @@ std::string Builder::degrees_text(Index from, Index to) const {
     return out;
 }
 
+// What leaves of a whole turn about z the angle that `rotate_extrude` is given; empty where that is
+// no plain number.
+std::string Builder::cut_of_revolution(Index name) const {
+    for (Index i = name + 2; i<match(name + 1); i = match(i)> i ? match(i) + 1 : i + 1) {
+        const bool named = text(i) == "angle" && is_one_of(kind(i + 1), {Tok::Assign, Tok::Colon});
+        const auto angle = named && is_one_of(kind(i + 3), {Tok::Comma, Tok::Close})
+                               ? parse_number(text(i + 2))
+                               : std::nullopt;
+        if (!angle || *angle <= 0 || *angle >= 360) continue;
+        const std::string a = std::string(text(i + 2)) + "deg";
+        const std::string end = "plane([sin(" + a + "), -cos(" + a + "), 0], 0)";
+        if (*angle > 180) return ".difference(plane(Y, 0) & " + end + ")";
+        return ".difference(plane(Y, 0))" + (*angle < 180 ? ".difference(" + end + ")" : "");
+    }
+    return {};
+}
+
 // A transform of OpenSCAD as it is written here, of which nothing more is said.
-std::string Builder::transform_text(Index name) const {
+// `flat`: of what has two dimensions.
+std::string Builder::transform_text(Index name, bool flat) const {
     const Index open = name + 1, close = match(open);
     const auto *row = std::ranges::find(transforms, text(name), &Transform::theirs);
     if (row == std::end(transforms) || row->ours.empty()) return {};
     const auto next = [&](Index i) { return match(i) > i ? match(i) + 1 : i + 1; };
     std::string ours(row->ours), arguments, height, twist;
-    bool centered = false, list = false;
+    bool centered = false, list = false, has_axis = false;
     int place = 0;
-    for (Index i = open; i < close; ++i)
-        if (kind(i) == Tok::Assign) diagnostics_.withdraw(Code::ForeignSyntax, span(i));
+    forget_arguments(open);
     for (Index from = open + 1, to = from; from < close; from = to + 1) {
         for (to = from; to < close && kind(to) != Tok::Comma;) to = next(to);
         if (to == from) continue;
         ++place;
-        const bool named = kind(from) == Tok::Name && is_one_of(kind(from + 1), {Tok::Assign});
+        const bool named =
+            kind(from) == Tok::Name && is_one_of(kind(from + 1), {Tok::Assign, Tok::Colon});
         const std::string_view theirs = named ? text(from) : place == 1 ? "1" : "2";
         const Index value = named ? from + 2 : from;
         if (value >= to || kind(from) == Tok::Bad) continue; // `$fn = 64`
+        has_axis = has_axis || theirs == "2" || theirs == "v";
         if (theirs == "center" || theirs == "centre") centered = text(value) == "true";
         if (named && is_one_of(theirs, needless_arguments)) continue;
         const auto *found = std::ranges::find_if(transform_arguments, [&](const auto &a) {
             return a.transform == text(name) && a.theirs == theirs;
         });
         const bool known = found != std::end(transform_arguments);
-        std::string written = value_text(value, to);
+        Index end = to;
+        const bool third = flat && kind(value) == Tok::ListOpen && match(value) + 1 == to &&
+                           text(name) != "color"; // of three parts, the third goes
+        if (third) {
+            Index comma = value;
+            for (Index i = value + 1, commas = 0; i < to - 1; i = next(i))
+                if (kind(i) == Tok::Comma && ++commas == 2) comma = i;
+            if (comma > value) end = comma;
+        }
+        std::string written = value_text(value, end) + (end < to ? "]" : "");
         switch (known ? found->turned : Turned::Kept) {
         case Turned::Kept: break;
         case Turned::Away: continue;
@@ -175,6 +194,11 @@ std::string Builder::transform_text(Index name) const {
         }
         case Turned::Degrees:
             list = kind(value) == Tok::ListOpen && match(value) + 1 == to;
+            if (end < to) { // about z
+                list = false;
+                written = degrees_text(end + 1, to - 1);
+                break;
+            }
             if (!list) {
                 written = degrees_text(value, to);
                 break;
@@ -195,7 +219,9 @@ std::string Builder::transform_text(Index name) const {
         arguments += our_name.empty() ? written : std::string(our_name) + ": " + written;
     }
     if (list) ours = "rotate_euler";
+    if (ours == "rotate" && !has_axis && !flat && place > 0) arguments += ", axis: Z";
     std::string out = ours + "(" + arguments + ")" + std::string(row->behind);
+    if (ours == "revolve") out += cut_of_revolution(name);
     if (!twist.empty()) out += ".rotate(" + half_of(twist) + ", axis: Z)"; // 0 at the bottom
     if (!height.empty() && !centered) out += ".translate(z: " + half_of(height) + ")";
     return out;
@@ -212,7 +238,8 @@ std::string_view Builder::lost_of_transform(Index name) const {
         if (named && theirs == "offset" && (text(i) == "delta" || text(i) == "chamfer"))
             return "`offset` rounds the corners that `delta` keeps sharp; a sharp outline is made "
                    "larger by its own numbers";
-        if (named && theirs == "rotate_extrude" && text(i) == "angle" && text(i + 2) != "360")
+        if (named && theirs == "rotate_extrude" && text(i) == "angle" && text(i + 2) != "360" &&
+            cut_of_revolution(name).empty())
             return "`revolve` turns all the way round: cut off what is not wanted, as with "
                    "`- box([4, 9, 4]).translate([2, 0, 2])`";
         if (named && theirs == "linear_extrude" && text(i) == "scale" && text(i + 2) == "[")
@@ -231,32 +258,72 @@ bool Builder::juxtaposed_calls(Index first, Index at) {
     Index shape = first;
     std::array<std::string_view, longest_chain> lost;
     std::size_t links = 0;
-    for (; links < longest_chain && kind(shape) == Tok::Name && kind(shape + 1) == Tok::Open &&
-           kind(match(shape + 1) + 1) == Tok::Name && is_foreign_transform(text(shape));
-         ++links) {
-        const std::string one = transform_text(shape);
-        if (!one.empty()) chain.insert(0, "." + one);
+    std::array<Index, longest_chain> names;
+    std::size_t solid_from = 0; // the links from there on move what is flat, if that is
+    const auto moves = [&](Index i) {
+        return kind(i) == Tok::Name && kind(i + 1) == Tok::Open && is_foreign_transform(text(i)) &&
+               is_one_of(kind(match(i + 1) + 1), {Tok::Name, Tok::For, Tok::If});
+    };
+    for (; links < longest_chain && moves(shape); ++links) {
+        names[links] = shape;
         lost[links] = lost_of_transform(shape);
+        if (text(shape).ends_with("_extrude")) solid_from = links + 1;
         shape = match(shape + 1) + 1;
     }
     if (shape < at) return false;
+    const bool flat = solid_from > 0 || is_flat_shape(text(shape));
+    for (std::size_t i = 0; i < links; ++i)
+        if (const auto one = transform_text(names[i], flat && i >= solid_from); !one.empty())
+            chain.insert(0, "." + one);
     failed_ = shape;
-    const Index end = statement_end(first);
-    const std::string moved(text(shape));
+    Index end = statement_end(first);
+    const bool statement = kind(shape) != Tok::Name; // a loop or a choice
+    if (kind(shape) == Tok::If && goes_on_with_else(end))
+        for (++end; !ends_statement(end);) end = match(end) > end ? match(end) + 1 : end + 1;
+    const Index past = match(shape + 1) + 1;
+    const Solid solid = solid_of(shape, true);
+    const bool whole = !solid.text.empty() && past == end; // nothing behind it
+    // `translate(v) ring(6) cube(1);`: what a function is given stands in its braces
+    const bool takes = kind(shape + 1) == Tok::Open && kind(past) == Tok::Name && past < end &&
+                       !token(past).first_on_line;
+    const std::string moved = whole       ? solid.text
+                              : statement ? "union { " + std::string(text(shape)) + " … }"
+                                          : std::string(text(shape)) + "(…)";
+    if (whole) forget_arguments(shape + 1);
     Diagnostic &d =
         foreign(span(first, match(first + 1)), "a transform stands behind the shape that it moves");
     for (std::size_t i = 0; i < links; ++i)
         if (!lost[i].empty() &&
             std::find(lost.begin(), lost.begin() + i, lost[i]) == lost.begin() + i)
             d.note(std::string(lost[i]));
-    const std::string written = in_code(moved + "(…)" + chain);
+    if (whole && !solid.lost.empty()) d.note(std::string(solid.lost));
+    const std::string written = in_code(moved + chain);
+    std::vector<Edit> edits{
+        {{id_, token(first).begin, token(shape).begin}, statement ? "union { " : ""}};
+    const std::uint32_t last = token(end - 1).end;
+    if (whole) {
+        edits.push_back({{id_, token(shape).begin, last}, solid.text + chain});
+    } else {
+        if (takes) edits.push_back({{id_, token(past - 1).end, token(past).begin}, " { "});
+        edits.push_back({{id_, last, last}, (takes || statement ? " }" : "") + chain});
+    }
     d.help(written == in_code("…")
                ? "write the shape, and behind it what is done to it, the nearest "
                  "first"
                : "write " + written,
-           {{{id_, token(first).begin, token(shape).begin}, ""},
-            {{id_, token(end - 1).end, token(end - 1).end}, chain}});
+           std::move(edits));
     return true;
+}
+
+// A statement that OpenSCAD alone would have, and that is told as a whole.
+bool Builder::of_openscad(Index first) {
+    if (kind(first) != Tok::Name || kind(first + 1) != Tok::Open) return false;
+    const Index behind = match(first + 1) + 1;
+    const bool moves = is_foreign_transform(text(first)) && !may_be_declared(text(first)) &&
+                       is_one_of(kind(behind), {Tok::Name, Tok::For, Tok::If}) &&
+                       (kind(behind) == Tok::Name || !token(behind).first_on_line);
+    return (moves && juxtaposed_calls(first, first)) || foreign_solid(first) ||
+           foreign_minkowski(first);
 }
 
 } // namespace fathom::lang

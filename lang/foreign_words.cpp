@@ -127,7 +127,7 @@ bool Builder::foreign_statement(Index first) {
         }
         return false;
     }
-    if (called_record(binds ? first + 3 : first + 2)) return true;
+    if (called_record(binds ? first + 3 : first + 2) || of_openscad(first)) return true;
     if (kind(first) != Tok::Name) return false;
     if ((text(first) == "module" && kind(first + 1) == Tok::Dot && text(first + 2) == "exports") ||
         (text(first) == "exports" && !may_be_declared("exports") &&

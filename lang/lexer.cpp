@@ -351,22 +351,6 @@ void Lexer::sign(std::uint32_t begin, std::uint32_t end) {
     }
 }
 
-// `$fn = 64;`, and `, $fn = 64` among arguments: all of it. Nothing where no `=` follows.
-std::optional<Span> Lexer::assignment_from(std::uint32_t begin, std::uint32_t end) const {
-    const std::string_view all = source_.text;
-    const std::size_t sign = std::min(all.find_first_not_of(' ', end), all.size());
-    if (sign == all.size() || all[sign] != '=') return std::nullopt;
-    std::size_t last = std::min(all.find_first_of(";\n,)", sign), all.size()), first = begin;
-    const char behind = last < all.size() ? all[last] : '\n';
-    const std::size_t before = begin > 0 ? all.find_last_not_of(' ', begin - 1) : all.npos;
-    const bool after_comma = before != all.npos && all[before] == ',';
-    if ((behind == ',' || behind == ')') && after_comma)
-        first = before;
-    else if (behind == ';' || behind == ',')
-        last = std::min(all.find_first_not_of(' ', last + 1), all.size());
-    return span(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
-}
-
 // What OpenSCAD keeps in names of its own.
 static bool is_special(std::string_view name) {
     constexpr std::array<std::string_view, 9> special = {"fn",  "fa",  "fs",  "t",      "vpr",
@@ -429,7 +413,9 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
     if (text == "$children") {
         add(Tok::Bad, begin, end);
         report(Code::BadCharacter, begin, end, "the language does not use `$`")
-            .help("the shapes that a function is given are a parameter: `fn ring(s) { … s … }`");
+            .help("the shapes that a function is given are a parameter, `parts: [shape]`: their "
+                  "number is `len(parts)`",
+                  {{span(begin, end), "len(parts)"}});
         return;
     }
     add(Tok::Bad, begin, end);
@@ -451,8 +437,8 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
             report(Code::BadCharacter, begin, end, "the language does not use `$`")
                 .note("names are plain words; smoothness needs no `$fn`, a distance field has no "
                       "facets");
-        if (const std::optional<Span> all = assignment_from(begin, end))
-            d.help("leave it away", {{*all, ""}});
+        const std::optional<Span> all = assignment_from(begin, end);
+        if (all && !makes_prism(*all)) d.help("leave it away", {{*all, ""}});
     } else if (text[0] == '\'') {
         report(Code::BadCharacter, begin, end, "the language does not use `'`")
             .help("a string stands in double quotes, a comment begins with `//`");

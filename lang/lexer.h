@@ -55,6 +55,7 @@ class Lexer {
                         std::string replacement);
     std::string set_apart(std::uint32_t begin, std::uint32_t end, std::string_view ours) const;
     std::optional<Span> assignment_from(std::uint32_t begin, std::uint32_t end) const;
+    bool makes_prism(Span assignment) const;
     std::uint32_t name_with_letters(std::uint32_t begin);
     bool strange_sign(std::uint32_t begin, std::uint32_t end, std::uint32_t code_point);
     // Signs of mathematics (strange_signs.cpp).

@@ -261,4 +261,41 @@ bool Lexer::sign_of_mathematics(std::uint32_t begin, std::uint32_t end) {
     return true;
 }
 
+// `$fn = 64;`, and `, $fn = 64` among arguments: all of it. Nothing where no `=` follows.
+std::optional<Span> Lexer::assignment_from(std::uint32_t begin, std::uint32_t end) const {
+    const std::string_view all = source_.text;
+    const std::size_t sign = std::min(all.find_first_not_of(' ', end), all.size());
+    if (sign == all.size() || all[sign] != '=') return std::nullopt;
+    std::size_t last = std::min(all.find_first_of(";\n,)", sign), all.size()), first = begin;
+    const char behind = last < all.size() ? all[last] : '\n';
+    const std::size_t before = begin > 0 ? all.find_last_not_of(' ', begin - 1) : all.npos;
+    const bool after_comma = before != all.npos && all[before] == ',';
+    if ((behind == ',' || behind == ')') && after_comma)
+        first = before;
+    else if (behind == ';' || behind == ',')
+        last = std::min(all.find_first_not_of(' ', last + 1), all.size());
+    return span(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
+}
+
+// `, $fn = 6` of a `cylinder` or a `circle`, which the edit of that call keeps.
+bool Lexer::makes_prism(Span assignment) const {
+    const std::string_view all = source_.text, name = "$fn";
+    const std::string_view whole = all.substr(assignment.begin, assignment.end - assignment.begin);
+    const std::size_t sign = whole.find('=');
+    std::string_view number = whole.substr(std::min(sign, whole.size() - 1) + 1);
+    number.remove_prefix(std::min(number.find_first_not_of(' '), number.size()));
+    number = number.substr(0, number.find_first_not_of("0123456789"));
+    const auto faces =
+        whole.find(name) == whole.npos || sign == whole.npos ? std::nullopt : parse_number(number);
+    if (!faces || *faces > 8 || *faces < 3) return false;
+    int depth = 0;
+    constexpr std::size_t farthest = 1000;
+    for (std::size_t i = assignment.begin, n = 0; i-- > 0 && n < farthest; ++n) {
+        depth += all[i] == ')' ? 1 : all[i] == '(' ? -1 : 0;
+        if (depth < 0)
+            return all.substr(0, i).ends_with("cylinder") || all.substr(0, i).ends_with("circle");
+    }
+    return false;
+}
+
 } // namespace fathom::lang

@@ -45,7 +45,7 @@ TEST_CASE("names in the parentheses, and lines that need not be, are answered wi
         {"import * from \"a.sdf\"", "foreign-syntax", "import \"a.sdf\""},
         {"import *\nsphere(1)", "foreign-syntax", "\nsphere(1)"},
         {"$fn = 64; sphere(1)", "bad-character", "sphere(1)"},
-        {"sphere(1, $fn = 64)", "bad-character", "sphere(1)"},
+        {"sphere(1, $fn = 64)", "foreign-syntax", "sphere(1)"},
     };
     for (const Case &c : cases) check(c);
 }
@@ -123,7 +123,7 @@ TEST_CASE("forms of other languages are answered with our own") {
         {"let a = +3", "foreign-syntax", "let a = 3"},
         {"sphere(r = 1)", "foreign-syntax", "sphere(r: 1)"},
         {"translate([1, 2]) sphere(1)", "foreign-syntax", "sphere(1).translate([1, 2])"},
-        {"translate(1) rotate(2) a", "foreign-syntax", "a.rotate(2deg).translate(1)"},
+        {"translate(1) rotate(2) a", "foreign-syntax", "a.rotate(2deg, axis: Z).translate(1)"},
         {"let l = [f(i) for i in l]", "foreign-syntax", "let l = [for i in l { f(i) }]"},
         {"let l = [0:8]", "foreign-syntax", "let l = [0..=8]"},
         {"let x = a if b else c", "foreign-syntax", "let x = if b { a } else { c }"},
@@ -152,7 +152,8 @@ TEST_CASE("forms of other languages are answered with our own") {
         {"let l = [f 1, g]", "foreign-syntax", "let l = [f(1), g]"},
         {"let a = 1 in a", "foreign-syntax", "let a = 1; a"},
         {"assert a < 2", "foreign-syntax", "assert(a < 2)"},
-        {"rotate([0, 45, 0]) cube(1)", "foreign-syntax", "cube(1).rotate_euler([0, 45deg, 0])"},
+        {"rotate([0, 45, 0]) cube(1)", "foreign-syntax",
+         "box(1).translate([0.5, 0.5, 0.5]).rotate_euler([0, 45deg, 0])"},
         {"translate([1, 2, 3]) { a; b }", "foreign-syntax", "union { a; b }.translate([1, 2, 3])"},
         {"import parts/arch.sdf", "foreign-syntax", "import \"parts/arch.sdf\""},
         {"import ../arch as arch", "foreign-syntax", "import \"../arch.sdf\" as arch"},
@@ -161,7 +162,7 @@ TEST_CASE("forms of other languages are answered with our own") {
         {"let a = f\"x\"", "foreign-syntax", ""},
         {"let a = new B(1)", "foreign-syntax", "let a = B(1)"},
         {"f x = x * 2", "foreign-syntax", "fn f(x) = x * 2"},
-        {"*a", "foreign-syntax", "a"},
+        {"*a", "foreign-syntax", "// *a"},
         {"# remark\na", "foreign-syntax", "// remark\na"},
         {"#define A 1\na", "foreign-syntax", "let A = 1\na"},
         {"fn f() { a //= 2\n }", "foreign-syntax", ""},
