@@ -36,6 +36,11 @@ bool is_one_of(std::string_view word, const std::array<std::string_view, N> &wor
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+inline constexpr std::string_view changes_nothing =
+    "a function changes none of its arguments: it returns what is new, several numbers as a "
+    "vector, "
+    "`fn f(p: vec3) = vec2(d, id)`, whose parts are `f(p).x` and `f(p).y`";
+
 // Half of a value that stands in a text; a shape of OpenSCAD that has two dimensions.
 std::string half_of(std::string_view value);
 bool is_flat_shape(std::string_view name);
@@ -270,6 +275,7 @@ class Builder {
     bool foreign_count(Index at);
     bool foreign_in(Index at);
     void changed_parameter(Index word, Index type);
+    void note_changed(Index open, Diagnostic &d) const;
     bool foreign_function_body(Index at);
     bool foreign_instead(Index at, std::string message, const std::string &replacement);
     bool foreign_loop(Index at);

@@ -326,8 +326,8 @@ void Builder::foreign_function(Index first, Index name, bool has_type) {
             .help("write `" + head + " { … }`", std::move(edits));
         return;
     }
-    foreign(span(first, name), "a function is declared with `fn`")
-        .help("write " + in_code(head), std::move(edits));
+    Diagnostic &d = foreign(span(first, name), "a function is declared with `fn`");
+    note_changed(open, d.help("write " + in_code(head), std::move(edits)));
 }
 
 // -- all -----------------------------------------------------------------------------------------

@@ -254,8 +254,7 @@ void Builder::changed_parameter(Index word, Index type) {
         ours = name + (known ? ": " + std::string(text(type)) : "");
     Diagnostic &d =
         foreign(span(word, type + 1), "a parameter's type stands behind its name, after a `:`");
-    if (text(word) == "inout" || text(word) == "out")
-        d.note("a function changes none of its arguments: it returns what is new");
+    if (text(word) == "inout" || text(word) == "out") d.note(std::string(changes_nothing));
     d.help("write " + in_code(ours), {{span(word, type + 1), ours}});
 }
 

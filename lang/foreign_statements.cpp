@@ -422,4 +422,13 @@ bool Builder::of_other_program(Index first) {
     return true;
 }
 
+// For GLSL's `void f(inout vec2 p, out float d)`, whose parameters begin at a `(`.
+void Builder::note_changed(Index open, Diagnostic &d) const {
+    bool changes = false;
+    for (Index i = open + 1; i < match(open); ++i)
+        changes = changes || ((text(i) == "out" || text(i) == "inout") &&
+                              is_one_of(kind(i - 1), {Tok::Open, Tok::Comma}));
+    if (changes) d.note(std::string(changes_nothing));
+}
+
 } // namespace fathom::lang

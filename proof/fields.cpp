@@ -184,8 +184,10 @@ std::optional<NodeId> Prover::expression(ShapeId id, int depth) {
 
 namespace {
 
-std::string cause_text(std::optional<Op> cause) {
+std::string cause_text(std::optional<Op> cause, Trouble trouble = Trouble::None) {
     if (!cause) return "an operation";
+    if (*cause == Op::Atan2 && trouble == Trouble::Jump)
+        return "`atan(y, x)` where y is 0 and x below 0";
     if (const char *trouble = ir::info(*cause).trouble; *trouble) return trouble;
     std::string name(ir::info(*cause).name);
     for (char &c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -239,7 +241,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     }
     const Blamed blamed = blame(id, b);
     const bool divides = blamed.node && graph[blamed.node].op == Op::Div;
-    std::string cause = divides ? cause_text(Op::Div) : cause_text(b.cause);
+    std::string cause = divides ? cause_text(Op::Div) : cause_text(b.cause, b.trouble);
     if (divides && report_division(id, b, blamed, what)) return;
     const bool endless = !place(id).box.finite() && !place(id).zone;
     const bool grows = !divides && (b.trouble == Trouble::None || b.trouble == Trouble::Overflow ||

@@ -158,6 +158,9 @@ struct Prover {
     Interval own_values(ir::ShapeId id, const Cell &cell, int depth); // as if proved everywhere
     double magnitude(ir::ShapeId id, const Box &box);
     Box extent(ir::ShapeId id); // holds the solid, wherever its field's values say so
+    // Of a part that has a region (cut_away.cpp).
+    bool leaves_nothing(ir::ShapeId id, const Zone &zone, int dims);
+    void tell_cut_away(ir::ShapeId id);
     void find_extent(ir::ShapeId id, Derived &k);           // sets the box of what has none
     double surface_slope(ir::ShapeId id, const Derived &k); // see ir::ShapeFact
 

@@ -93,6 +93,8 @@ void Prover::run() {
             keep_in_ball(ShapeId{i}, k);
             k.fact.curvature = curvature_of(ShapeId{i}, k);
             finish(ShapeId{i}, k);
+            if (scene.shapes[ShapeId{i}].kind == ShapeKind::Within && !k.failed)
+                tell_cut_away(ShapeId{i});
             if (k.fact.bounds.finite()) k.fact.bounded = k.fact.bounds;
         }
         if (places[i].reached) {

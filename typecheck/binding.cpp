@@ -187,16 +187,19 @@ static std::string_view only_one_left(std::span<const Formal> formals,
                                       std::span<const Given> bound) {
     std::string_view left;
     std::size_t unnamed = 0;
-    bool named = false;
+    bool named = false, function = false; // a function is what a shape's copies are made by
     for (const Argument &a : args) {
         named = named || a.name;
-        unnamed += named && !a.name && !a.trailing ? 1 : 0;
+        const bool counts = named && !a.name && !a.trailing;
+        unnamed += counts ? 1 : 0;
+        function = function || (counts && is_function(a.value));
     }
     for (std::size_t i = 0; i < formals.size(); ++i) {
         const bool given = bound[i].given || std::ranges::any_of(args, [&](const Argument &a) {
                                return a.name && a.name->text == formals[i].name;
                            });
-        if (given || formals[i].optional || formals[i].takes_rest) continue;
+        const bool wanted = !formals[i].optional || (function && formals[i].name == "copies");
+        if (given || !wanted || formals[i].takes_rest) continue;
         if (!left.empty()) return {};
         left = formals[i].name;
     }
