@@ -270,7 +270,10 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
         is_numeric(v))
         help_with_whole(ev, d, v, place);
     if (type.kind == lang::TypeExpr::Kind::Name && type.named == lang::TypeName::Region)
-        d.note("a region is `ball(r)`, `aabb(lo, hi)`, `tube(axis, r)` or `everywhere`");
+        help_with_region(ev,
+                         d.note("a region is `ball(r)`, `aabb(lo, hi)`, `tube(axis, r)` or "
+                                "`everywhere`"),
+                         v, place);
     if (type.kind == lang::TypeExpr::Kind::List && v.kind == ValueKind::List &&
         (type.items[0].named == lang::TypeName::Shape ||
          type.items[0].named == lang::TypeName::AnyShape)) {
@@ -309,6 +312,7 @@ static void want(Interpreter &ev, const Value &v, Span place, What what, std::st
         d.help("a shape tells no place: write it as a vector, `[0, 0, 0]`");
     if (wanted == "a vec3") help_with_value(ev, d, v, TypeName::Vec3, place);
     if (v.kind == ValueKind::Shape && wanted == "a color") help_with_shape(d, "color");
+    if (wanted.starts_with("a region")) help_with_region(ev, d, v, place);
 }
 
 // The number, or nothing after a report.

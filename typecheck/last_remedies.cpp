@@ -332,4 +332,20 @@ Fix without_qualifier(Interpreter &ev, std::uint32_t frame, const std::string &n
             {{{place.source, place.begin, static_cast<std::uint32_t>(end)}, near}}};
 }
 
+void help_with_region(const Interpreter &ev, Diagnostic &d, const Value &v, Span place) {
+    if (!place.source || is_library_place(ev, place)) return;
+    const std::string written = source_text(ev, place);
+    if (is_numeric(v) && !ir::is_vector(numeric_type(ev, v)))
+        d.help("what is within a radius is a ball", {{place, "ball(" + written + ")"}});
+    const std::size_t open = written.find('(');
+    if (v.kind != ValueKind::Shape || written.find(')') + 1 != written.size()) return;
+    const std::string name = written.substr(0, open),
+                      size = written.substr(open + 1, written.size() - open - 2);
+    const bool one = !size.empty() &&
+                     (size.find(',') == size.npos || (size.front() == '[' && size.back() == ']'));
+    if (!one || size.find(':') != size.npos) return;
+    if (name == "sphere") d.help("its region is a ball", {{place, "ball(" + size + ")"}});
+    if (name == "box") d.help("its region", {{place, "aabb(" + size + " / -2, " + size + " / 2)"}});
+}
+
 } // namespace fathom::typecheck

@@ -96,6 +96,8 @@ void help_with_second_call(const Interpreter &ev, Diagnostic &d, Span call);
 Fix part_of_point(const Interpreter &ev, const std::string &name, Span place);
 // `translate(x, 1)`: the name of an argument, with a comma behind it.
 Fix name_before_value(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place);
+// For `sphere(2)`, `box([4, 2, 4])` or a number in the place of a region: the region that is as large.
+void help_with_region(const Interpreter &ev, Diagnostic &d, const Value &v, Span place);
 // For a number with a fraction where a whole one is wanted.
 void help_with_whole(const Interpreter &ev, Diagnostic &d, const Value &v, Span place);
 // For what is no shape beside `|` or `&`.
