@@ -32,7 +32,7 @@ $# Mesa's llvmpipe ends all loops of a shader after 65,536 turns and says nothin
         fathom_left = 1.0; // the ray begins anew, in passes of fewer steps
         fathom_color = vec4(0.0);
 #else
-        fathom_left = 0.25; // it stays undecided
+        if (fathom_left < 0.9) fathom_left = 0.25; // what it met last is undecided
 #endif
     }
 $end
