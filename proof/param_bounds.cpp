@@ -153,6 +153,7 @@ class ParamBounds {
     }
 
     ParamBound find(double whole) {
+        whole_ = whole;
         ParamBound least;
         const std::vector<Input> params = read_params();
         if (!params.empty() && params.size() <= most_params) {
@@ -245,7 +246,7 @@ class ParamBounds {
     }
     struct Found {
         NodeId formula;
-        double present; // its value at the present values
+        double present = ir::rounding::infinity; // its value at the present values
     };
     // Convex in each param that the field is affine in, while the others stand still: of a box its
     // corners tell. So these come first, and the numbers at the corners are chosen by the others.
@@ -305,7 +306,9 @@ class ParamBounds {
         return std::isfinite(whole) && whole > pays_from * present + 0.05;
     }
     double bound(const Ranges &ranges, NodeId field) {
-        return bound_field(context_, ranges, field, domain_, budget_).lipschitz * allowance;
+        // With less work one of these may be refused where the whole is not.
+        return std::min(bound_field(context_, ranges, field, domain_, budget_).lipschitz, whole_) *
+               allowance;
     }
     double at(const Input &input, Interval values) {
         Ranges ranges = ranges_;
@@ -410,8 +413,9 @@ class ParamBounds {
     NodeId field_;
     Domain domain_;
     Budget budget_;
-    std::size_t one_proof_ = 0; // work
-    double most_ = 0;           // of the bounds that the formula in hand is made of
+    double whole_ = ir::rounding::infinity; // the bound for all values
+    std::size_t one_proof_ = 0;             // work
+    double most_ = 0;                       // of the bounds that the formula in hand is made of
 };
 
 } // namespace
