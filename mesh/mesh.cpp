@@ -1,6 +1,7 @@
 #include "mesh/mesh.h"
 
 #include "backend-cpu/prune/solid_box.h"
+#include "mesh/crumbs.h"
 #include "mesh/thin.h"
 
 #include <cmath>
@@ -102,6 +103,43 @@ Failure untangle(Made &made, const Field &field, const Settings &settings, bool 
     return again ? draw_evenly(made, field, settings, divided, progress) : Failure::TooMany;
 }
 
+// Divides the larger cells that crumbs end in, until there are none. Where that leaves as many all is
+// as before: about an edge that is sharp enough each level has crumbs of its own.
+Failure join_crumbs(Made &made, const Field &field, const Settings &settings, std::size_t most,
+                    std::vector<Cell> &divided, Progress &progress) {
+    constexpr int most_rounds = 8;
+    Crumbs crumbs = find_crumbs(made.octree, made.loops);
+    struct Kept {
+        std::size_t count = 0;
+        Octree octree;
+        Loops loops;
+    };
+    std::optional<Kept> kept; // the last that had fewer than those before
+    std::vector<Cell> since;  // divided since then
+    for (int round = 0; round < most_rounds && !crumbs.larger.empty(); ++round) {
+        if (!kept || crumbs.count < kept->count) {
+            kept = Kept{crumbs.count, made.octree, made.loops};
+            divided.insert(divided.end(), since.begin(), since.end());
+            since.clear();
+        }
+        std::vector<Cell> changed = crumbs.larger;
+        refine(made.octree, field, changed, octree_settings(settings), progress);
+        const Failure failure = untangle(made, field, settings, false, most, changed, progress);
+        if (progress.cancelled) return Failure::Cancelled;
+        since.insert(since.end(), changed.begin(), changed.end());
+        if (failure != Failure::None) break;
+        crumbs = find_crumbs(made.octree, made.loops);
+        if (crumbs.count > kept->count) break;
+    }
+    if (kept && crumbs.count >= kept->count) {
+        made.octree = std::move(kept->octree);
+        made.loops = std::move(kept->loops);
+    } else {
+        divided.insert(divided.end(), since.begin(), since.end());
+    }
+    return Failure::None;
+}
+
 // From an octree without tangled cells to the mesh.
 Failure draw(Made &made, const Field &field, unsigned threads, Progress &progress) {
     Vertices vertices = place_vertices(made.octree, field, made.loops, threads, progress);
@@ -119,6 +157,8 @@ Failure finish(Made &made, const Field &field, const Settings &settings, bool ag
     const double from = progress.from, to = progress.to;
     progress.to = from + 0.2 * (to - from);
     Failure failure = untangle(made, field, settings, again, most, divided, progress);
+    if (failure == Failure::None)
+        failure = join_crumbs(made, field, settings, most, divided, progress);
     if (failure != Failure::None) return failure;
     progress.phase(from + 0.8 * (to - from));
     failure = draw(made, field, threads_of(settings), progress);

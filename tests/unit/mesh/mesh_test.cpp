@@ -1,6 +1,7 @@
 // Meshes of scenes whose topology, volume and corners are known.
 #include "driver/compile.h"
 #include "mesh/appearance.h"
+#include "mesh/crumbs.h"
 #include "mesh/mesh.h"
 #include "tests/support/mesh_checks.h"
 
@@ -114,6 +115,21 @@ TEST_CASE(
     for (const mesh::Point &p : ridge.mesh.vertices)
         on_edge += std::fabs(p[1] - p[2]) < 1e-3 && p[0] > 0.57;
     CHECK(on_edge > 20);
+}
+
+TEST_CASE(
+    "a sharp edge or a tip that only divided cells show is drawn in one piece with the rest") {
+    for (const char *text : // each had one to three crumbs beside it
+         {"(sphere(1) - sphere(1).translate(x: 0.5)).rotate(0.4, axis: [1, 2, 3])",
+          "rectangle([0.2, 0.14]).translate(x: 0.58).extrude(0.4, twist: 60deg)"}) {
+        INFO(text);
+        const mesh::Made made = mesh_of(text, 128);
+        CHECK(checked(made).components == 1);
+        CHECK(mesh::find_crumbs(made.octree, made.loops).count == 0);
+    }
+    // Balls that are smaller than a cell stay.
+    const char *dust = "sphere(0.004).repeat([0.1, 0.1, 0.1], count: [5, 5, 5])";
+    CHECK(checked(mesh_of(dust, 128)).components == 125);
 }
 
 TEST_CASE("solids that touch, and ones finer than the cells, still give a closed mesh") {
