@@ -41,9 +41,10 @@ bool in_reach(double value, double squared_slope, const Extent &box) {
     return value * value <= reach * reach * squared_slope * diagonal;
 }
 
-// Those boxes whose middle is not far from surface: one place is soon looked at.
+// Those boxes whose middle is not far from surface: one place is soon looked at. What the others are.
 std::vector<std::size_t> near_surface(Evaluator &evaluator, const cpu::ShortTape &tape,
-                                      std::span<const Extent> boxes) {
+                                      std::span<const Extent> boxes,
+                                      std::vector<Sighting> &others) {
     Points points;
     for (const Extent &box : boxes) points.add(place_in(box, shares[0]));
     std::array<std::vector<float>, 4> slopes;
@@ -53,6 +54,8 @@ std::vector<std::size_t> near_surface(Evaluator &evaluator, const cpu::ShortTape
         if (const double squares = squared_slope(slopes, n);
             !(squares > 0) || in_reach(slopes[0][n], squares, boxes[n]))
             near.push_back(n);
+        else
+            others[n].seen = slopes[0][n] <= 0 ? Seen::AllSolid : Seen::AllEmpty;
     return near;
 }
 
@@ -60,6 +63,7 @@ std::vector<std::size_t> near_surface(Evaluator &evaluator, const cpu::ShortTape
 struct Suspect {
     std::size_t number = 0; // of the box
     bool solid = false;
+    bool crossed = false;                       // it has surface
     float first = 0, nearest = 0;               // to 0 of all values: of the first step, and of all
     std::array<std::vector<float>, 3> planes{}; // as Sighting's, by the last step
 };
@@ -91,7 +95,8 @@ bool step_in(const std::array<std::vector<float>, 4> &slopes, std::size_t from, 
     float least = std::numeric_limits<float>::infinity();
     for (std::size_t k = from; k < from + places; ++k) {
         const float value = slopes[0][k];
-        if ((value <= 0) != suspect.solid && std::fabs(value) > most_thin * thin) return false;
+        suspect.crossed = (value <= 0) != suspect.solid && std::fabs(value) > most_thin * thin;
+        if (suspect.crossed) return false;
         least = std::min(least, std::fabs(value));
     }
     suspect.nearest = std::min(suspect.nearest, least);
@@ -127,7 +132,7 @@ std::vector<Sighting> look_for_seams(Evaluator &evaluator, const cpu::ShortTape 
     constexpr int steps = 6;
     constexpr float nearer = 0.25f; // than the nearest place at first
     std::vector<Sighting> seen(boxes.size());
-    const std::vector<std::size_t> near = near_surface(evaluator, tape, boxes);
+    const std::vector<std::size_t> near = near_surface(evaluator, tape, boxes, seen);
     Points points;
     for (const std::size_t n : near) add_places(boxes[n], points);
     std::vector<float> values;
@@ -136,7 +141,8 @@ std::vector<Sighting> look_for_seams(Evaluator &evaluator, const cpu::ShortTape 
     std::vector<std::size_t> kept; // where the places of those begin
     for (std::size_t n = 0; n < near.size(); ++n) {
         const std::span<const float> here = std::span(values).subspan(n * places, places);
-        Suspect suspect{near[n], here[0] <= 0, std::numeric_limits<float>::infinity(), 0, {}};
+        Suspect suspect{near[n], here[0] <= 0, false, std::numeric_limits<float>::infinity(), 0,
+                        {}};
         for (const float value : here) suspect.first = std::min(suspect.first, std::fabs(value));
         suspect.nearest = suspect.first;
         if (!std::ranges::all_of(here, [&](float v) { return (v <= 0) == suspect.solid; }))
@@ -155,16 +161,20 @@ std::vector<Sighting> look_for_seams(Evaluator &evaluator, const cpu::ShortTape 
                         points)) {
                 kept.push_back(k * places);
                 left.push_back(suspects[k]);
+            } else if (!suspects[k].crossed) {
+                seen[suspects[k].number].seen = suspects[k].solid ? Seen::AllSolid : Seen::AllEmpty;
             }
         keep_places(kept, points);
         suspects = std::move(left);
     }
-    for (Suspect &suspect : suspects)
+    for (Suspect &suspect : suspects) {
+        seen[suspect.number].seen = suspect.solid ? Seen::AllSolid : Seen::AllEmpty;
         if (suspect.nearest <= nearer * suspect.first) {
             for (auto &planes : suspect.planes) std::ranges::sort(planes);
             seen[suspect.number] = {suspect.solid ? Seen::MaySolid : Seen::MayEmpty,
                                     std::move(suspect.planes)};
         }
+    }
     return seen;
 }
 

@@ -13,9 +13,9 @@ struct Extent {
     Point lo{}, hi{};
 };
 
-// What samples in a box say: that it has surface or is far from any, or that it may be solid but for
-// gaps, or empty but for sheets.
-enum class Seen : std::uint8_t { NoSeam, MaySolid, MayEmpty };
+// What samples in a box say: that it has surface; that it may be solid but for gaps, or empty but for
+// sheets; or that all of it is solid, or empty, and far from 0.
+enum class Seen : std::uint8_t { NoSeam, MaySolid, MayEmpty, AllSolid, AllEmpty };
 
 struct Sighting {
     Seen seen = Seen::NoSeam;

@@ -13,8 +13,6 @@ constexpr std::size_t cuts = 8;        // that a slab is cut into
 constexpr std::size_t most_open = 3;   // at one time, but for guesses
 constexpr int most_cuttings = 24;      // floats cannot tell more cuts of cuts apart
 constexpr int end_cuttings = 3;        // … of what seems to reach the end of a box
-constexpr std::size_t most_levels = 9; // that are tried
-constexpr double along_gradient = 0.9; // the cosine from where a number may vary as the field does
 constexpr std::size_t most_runs = 400; // of the tape, for one box
 constexpr double most_thinnest =
     4; // slabs beside each other that are one plane: two lie at its ends
@@ -156,18 +154,18 @@ struct Look {
         const Across &across = directions[slab.across];
         return slab.across < 3 ? width : (width + 2 * across.level.error) / across.level.slope;
     }
+    // Where a number is held between ends so near, cutting it says no more about where that is.
+    double finest(const Slab &slab) const {
+        const Across &across = directions[slab.across];
+        return std::max({2 * double(ulp_of(slab)), across.play, across.level.error});
+    }
     // From its end to end, where cutting it has come to its end.
     double thinnest(const Slab &slab) const {
-        const Across &across = directions[slab.across];
-        return slab.across < 3
-                   ? thin
-                   : std::max({2 * double(ulp_of(slab)), across.play, thin * across.level.slope});
+        return slab.across < 3 ? thin
+                               : std::max(finest(slab), thin * directions[slab.across].level.slope);
     }
     bool is_thin(const Slab &slab) const {
-        const Across &across = directions[slab.across];
-        return (slab.across >= 3 &&
-                slab.hi - slab.lo <= std::max(2 * double(ulp_of(slab)), across.play)) ||
-               width_of(slab) <= thin;
+        return (slab.across >= 3 && slab.hi - slab.lo <= finest(slab)) || width_of(slab) <= thin;
     }
 
     // So many slabs may be open at a time: a plane lies in two at most, and a guess divides one.
@@ -330,6 +328,26 @@ struct Look {
         return std::nullopt;
     }
 
+    // The same, where numbers are 0.
+    std::optional<double> width_by_cuts(const Place &place, int strips) {
+        constexpr float nothing = 0x1p-120f;
+        const std::size_t most = runs + most_runs;
+        const auto from = [&](auto &&self, const Place &part, std::size_t first,
+                              int left) -> std::optional<double> {
+            for (std::size_t d = first; d < directions.size() && left > 0; ++d) {
+                if (!(part.ends[d][0] < 0 && part.ends[d][1] > 0) || runs > most) continue;
+                const auto inner = [&](const Place &rest) {
+                    const auto width = width_in(rest, 0);
+                    return width ? width : self(self, rest, d + 1, left - 1);
+                };
+                if (const auto width = width_between(part, {{d, -nothing, nothing}}, inner))
+                    return width;
+            }
+            return std::nullopt;
+        };
+        return from(from, place, 3, strips);
+    }
+
     // Across each direction in turn; then where planes meet, so that one of them is stripped off first;
     // then where they cross.
     std::optional<double> width_in(const Place &place, int strips) {
@@ -371,56 +389,6 @@ struct Look {
     }
 };
 
-double cosine(const Level &x, const Level &y) {
-    double product = 0, a = 0, b = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        product += x.gradient[i] * y.gradient[i];
-        a += x.gradient[i] * x.gradient[i];
-        b += y.gradient[i] * y.gradient[i];
-    }
-    return std::fabs(product) / std::sqrt(a * b);
-}
-
-// Whether a number may be what the field depends on somewhere here: it changes in the same direction.
-bool may_hold(const Level &level, const std::array<std::vector<float>, 4> &slopes) {
-    for (std::size_t k = 0; k < slopes[0].size(); ++k) {
-        double product = 0, a = 0, b = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            product += level.gradient[i] * slopes[1 + i][k];
-            a += level.gradient[i] * level.gradient[i];
-            b += double(slopes[1 + i][k]) * slopes[1 + i][k];
-        }
-        if (std::fabs(product) > along_gradient * std::sqrt(a * b)) return true;
-    }
-    return false;
-}
-
-// Those that are worth a look, in the order of the tape. Of many rather the earliest one of each
-// direction, on which the others of that direction are likely to depend; then those of directions in
-// which no slope that was seen points, as one of the planes that meet in a corner may lie.
-std::vector<Level> chosen_levels(const std::vector<Level> &levels,
-                                 const std::array<std::vector<float>, 4> &slopes) {
-    constexpr double parallel = 0.9999;
-    std::vector<Level> first, more, unseen;
-    for (const bool seen : {true, false})
-        for (const Level &level : levels) {
-            if (may_hold(level, slopes) != seen || !(level.lo < level.hi)) continue;
-            const auto is_new = [&](const std::vector<Level> &all) {
-                return std::ranges::none_of(
-                    all, [&](const Level &one) { return cosine(one, level) > parallel; });
-            };
-            if (seen)
-                (is_new(first) ? first : more).push_back(level);
-            else if (is_new(first) && is_new(unseen))
-                unseen.push_back(level);
-        }
-    first.insert(first.end(), unseen.begin(), unseen.end());
-    first.insert(first.end(), more.begin(), more.end());
-    if (first.size() > most_levels) first.resize(most_levels);
-    std::ranges::sort(first, {}, [](const Level &level) { return level.where.step; });
-    return first;
-}
-
 // The numbers that change as a direction's does, each within so little that it may tell gaps and
 // sheets from what has some thickness.
 void tie_alike(Across &across, const std::vector<Level> &levels, const Point &lo, const Point &hi,
@@ -452,28 +420,33 @@ std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cp
 
 SeamSearch search_seam(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                        const Extent &box, const Sighting &sighting, double thin, bool closely) {
-    if (sighting.seen == Seen::NoSeam) return {};
+    const bool far = sighting.seen == Seen::AllSolid || sighting.seen == Seen::AllEmpty;
+    if (sighting.seen == Seen::NoSeam || (far && !closely)) return {};
     const auto &[lo, hi] = box;
-    Look look{evaluator, tape, boxes, sighting.seen == Seen::MaySolid, thin, sighting};
+    const bool solid = sighting.seen == Seen::MaySolid || sighting.seen == Seen::AllSolid;
+    Look look{evaluator, tape, boxes, solid, thin, sighting};
     Place place;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         look.directions.push_back({axis, {{}, lo[axis], hi[axis], 1, 0, {}}});
         place.ends.push_back({lo[axis], hi[axis]});
     }
-    std::optional<double> width = look.width_in(place, 0);
-    if (!width) width = look.width_by_guesses(place, most_strips);
+    std::optional<double> width;
+    if (!far) width = look.width_in(place, 0);
+    if (!far && !width) width = look.width_by_guesses(place, most_strips);
     if (!width) {
         std::array<std::vector<float>, 4> slopes;
         slopes_in(evaluator, tape, box, slopes);
         ++look.runs;
-        const std::vector<Level> levels = levels_in(evaluator, tape, boxes, lo, hi);
+        std::vector<Level> levels = levels_in(evaluator, tape, boxes, lo, hi);
+        if (far) std::erase_if(levels, [](const Level &level) { return !has_cut(level); });
         for (const Level &level : chosen_levels(levels, slopes)) {
             look.directions.push_back({3, level});
             place.ends.push_back({level.lo, level.hi});
             tie_alike(look.directions.back(), levels, lo, hi, thin);
         }
-        if (closely || look.directions.size() > 3)
+        if (!far && (closely || look.directions.size() > 3))
             width = look.width_in(place, closely ? most_strips : 0);
+        if (!width && closely) width = look.width_by_cuts(place, most_strips);
     }
     return {width ? std::optional(Seam{look.solid, *width}) : std::nullopt, look.runs};
 }

@@ -12,6 +12,8 @@ using cpu::Kernel;
 constexpr double unit_roundoff = 0x1.01p-24; // of sums, products and quotients,
 constexpr double of_roots = 0x1p-22;         // … and of what is not rounded right
 constexpr double inward = 1 - 1e-6;          // what sums of doubles may take
+constexpr std::size_t most_levels = 9;       // that are chosen
+constexpr double along_gradient = 0.9; // the cosine from where a number may vary as the field does
 
 struct Interval {
     double lo = 0, hi = 0;
@@ -115,6 +117,18 @@ Varying one_of(const Varying &a, const Varying &b) {
 
 Varying negative(const Varying &a) { return chained({{&a, minus_one}}, 0); }
 
+// The sine of an angle, or its cosine: both at their derivatives about the middle of its range.
+Varying wave_of(const Varying &angle, bool cosine) {
+    constexpr double near = 5e-7, by_size = 1.2e-7; // what its floats are off (docs/trusted.md, 2)
+    const double middle = 0.5 * (angle.range.lo + angle.range.hi);
+    const double half = 0.5 * (angle.range.hi - angle.range.lo) + 1e-9 * (1 + std::fabs(middle));
+    const double slope = cosine ? -std::sin(middle) : std::cos(middle);
+    Varying made =
+        chained({{&angle, {std::max(slope - half, -1.0), std::min(slope + half, 1.0)}}}, 0);
+    made.error += near + by_size * size(angle.range);
+    return made;
+}
+
 // What kernels of one output give; others are not known.
 Varying through(Kernel kernel, const std::vector<Varying> &in) {
     const auto differences = [&] {
@@ -140,6 +154,8 @@ Varying through(Kernel kernel, const std::vector<Varying> &in) {
     if (kernel == Kernel::Dot2) return sum_of_products(in.data(), in.data() + 2, 2);
     if (kernel == Kernel::Dot3) return sum_of_products(in.data(), in.data() + 3, 3);
     if (kernel == Kernel::Dot4) return sum_of_products(in.data(), in.data() + 4, 4);
+    if (kernel == Kernel::SinF) return wave_of(in[0], false);
+    if (kernel == Kernel::CosF) return wave_of(in[0], true);
     if (kernel == Kernel::AbsF) return size_of(in[0]);
     if (kernel == Kernel::AbsSub) {
         const Varying whole = size_of(in[0]);
@@ -187,7 +203,73 @@ double least_slope(const Varying &number) {
     return best;
 }
 
+// Of a number that an evaluator has over a box and, behind that, at its middle.
+Level level_of(Register where, const cpu::Shortener &ranges, const Varying &number, double slope) {
+    const std::uint32_t at = where.address;
+    Level level{where,
+                ranges.lo[at],
+                ranges.hi[at],
+                slope,
+                number.error,
+                {},
+                {},
+                {ranges.lo[at + 1], ranges.hi[at + 1]}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        level.gradient[i] = 0.5 * (number.slope[i].lo + number.slope[i].hi);
+        level.slopes[i] = {number.slope[i].lo, number.slope[i].hi};
+    }
+    return level;
+}
+
+// Whether a number may be what the field depends on somewhere here: it changes in the same direction.
+bool may_hold(const Level &level, const std::array<std::vector<float>, 4> &slopes) {
+    for (std::size_t k = 0; k < slopes[0].size(); ++k) {
+        double product = 0, a = 0, b = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            product += level.gradient[i] * slopes[1 + i][k];
+            a += level.gradient[i] * level.gradient[i];
+            b += double(slopes[1 + i][k]) * slopes[1 + i][k];
+        }
+        if (std::fabs(product) > along_gradient * std::sqrt(a * b)) return true;
+    }
+    return false;
+}
+
 } // namespace
+
+double cosine(const Level &x, const Level &y) {
+    double product = 0, a = 0, b = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        product += x.gradient[i] * y.gradient[i];
+        a += x.gradient[i] * x.gradient[i];
+        b += y.gradient[i] * y.gradient[i];
+    }
+    return std::fabs(product) / std::sqrt(a * b);
+}
+
+std::vector<Level> chosen_levels(const std::vector<Level> &levels,
+                                 const std::array<std::vector<float>, 4> &slopes) {
+    constexpr double parallel = 0.9999;
+    std::vector<Level> first, more, unseen;
+    for (const bool seen : {true, false})
+        for (const Level &level : levels) {
+            if (may_hold(level, slopes) != seen || !(level.lo < level.hi)) continue;
+            const auto is_new = [&](const std::vector<Level> &all) {
+                return std::ranges::none_of(
+                    all, [&](const Level &one) { return cosine(one, level) > parallel; });
+            };
+            if (seen)
+                (is_new(first) ? first : more).push_back(level);
+            else if (is_new(first) && is_new(unseen))
+                unseen.push_back(level);
+        }
+    std::ranges::stable_partition(unseen, has_cut);
+    first.insert(first.end(), unseen.begin(), unseen.end());
+    first.insert(first.end(), more.begin(), more.end());
+    if (first.size() > most_levels) first.resize(most_levels);
+    std::ranges::sort(first, {}, [](const Level &level) { return level.where.step; });
+    return first;
+}
 
 Tie tie_of(const Level &level, const Level &other, const Point &lo, const Point &hi) {
     constexpr double of_doubles = 1e-9;    // what their rounding may take, of what is added up
@@ -245,12 +327,19 @@ std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, c
         const cpu::Step &step = field.parts.table[id];
         const cpu::Part &part = field.parts.parts[id];
         const std::uint32_t *operands = field.parts.operands.data() + step.operands;
-        Varying made;
-        const bool plain = step.kind == cpu::StepKind::Run && part.writes == 1 && !step.once;
+        std::array<Varying, 2> made;
+        const bool waves = step.kind == cpu::StepKind::Run &&
+                           cpu::kernel_of_variant(step.target) == Kernel::SinCos;
+        const bool plain =
+            step.kind == cpu::StepKind::Run && !step.once && part.writes == (waves ? 2u : 1u);
         if (plain) {
             in.clear();
-            for (std::uint32_t n = 1; n < part.operands; ++n) in.push_back(slopes.at(operands[n]));
-            made = through(cpu::kernel_of_variant(step.target), in);
+            for (std::uint32_t n = part.writes; n < part.operands; ++n)
+                in.push_back(slopes.at(operands[n]));
+            if (waves)
+                made = {wave_of(in[0], false), wave_of(in[0], true)};
+            else
+                made[0] = through(cpu::kernel_of_variant(step.target), in);
         }
         cpu::Selection here = whole;
         here.steps = whole.steps.subspan(k, 1);
@@ -265,23 +354,13 @@ std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, c
             if (const std::uint32_t to = operands[n]; !slopes.shared(to))
                 slopes.by_slot[slopes.slot(to)].known =
                     evaluator.ranges.lo[to] == evaluator.ranges.hi[to];
-        if (!plain || slopes.shared(operands[0])) continue;
-        if (made.known) slopes.by_slot[slopes.slot(operands[0])] = made;
-        const double slope = made.known ? least_slope(made) : 0;
-        if (!(slope > 0)) continue;
-        Level level{{k, operands[0]},
-                    evaluator.ranges.lo[operands[0]],
-                    evaluator.ranges.hi[operands[0]],
-                    slope,
-                    made.error,
-                    {},
-                    {},
-                    {evaluator.ranges.lo[operands[0] + 1], evaluator.ranges.hi[operands[0] + 1]}};
-        for (std::size_t i = 0; i < 3; ++i) {
-            level.gradient[i] = 0.5 * (made.slope[i].lo + made.slope[i].hi);
-            level.slopes[i] = {made.slope[i].lo, made.slope[i].hi};
+        for (std::uint32_t n = 0; plain && n < part.writes; ++n) {
+            const std::uint32_t to = operands[n];
+            if (!made[n].known || slopes.shared(to)) continue;
+            slopes.by_slot[slopes.slot(to)] = made[n];
+            if (const double slope = least_slope(made[n]); slope > 0)
+                levels.push_back(level_of({k, to}, evaluator.ranges, made[n], slope));
         }
-        levels.push_back(level);
     }
     return levels;
 }

@@ -36,4 +36,17 @@ Tie tie_of(const Level &level, const Level &other, const Point &lo, const Point 
 std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                              const Point &lo, const Point &hi);
 
+// Whether a number is 0 somewhere: there angles, signs and sizes that are made of it have their cuts.
+inline bool has_cut(const Level &level) { return level.lo < 0 && level.hi > 0; }
+
+// The cosine between the directions in which two numbers change, without its sign.
+double cosine(const Level &x, const Level &y);
+
+// Those that are worth a look, in the order of the tape. Of many rather the earliest one of each
+// direction, on which the others of that direction are likely to depend; then those of directions in
+// which no slope that was seen points, as one of the planes that meet in a corner may lie: of these
+// first those that have cuts. `slopes`: the field's at some places of the box, from 1 on.
+std::vector<Level> chosen_levels(const std::vector<Level> &levels,
+                                 const std::array<std::vector<float>, 4> &slopes);
+
 } // namespace fathom::mesh

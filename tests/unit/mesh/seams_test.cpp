@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <fmt/format.h>
 #include <random>
 
 using namespace fathom;
@@ -176,6 +177,30 @@ TEST_CASE("planes that cross in an edge or a corner are found") {
     }
 }
 
+TEST_CASE("parts that are flush are found where an angle has its cut") {
+    // A herringbone gear: a tooth lies across the cut of the angle, turned on both sides of z = 0.
+    const auto gear = [](const char *apart) {
+        return fmt::format("let h = (circle(0.54) | rectangle([0.2, 0.14]).translate(x: 0.58)"
+                           ".repeat_polar(12)).rotate(15deg).extrude(0.2, twist: 30deg)"
+                           ".translate(z: {})\nh | h.reflect(Z)",
+                           apart);
+    };
+    const mesh::Point lo{-0.6f, -0.004f, -0.005f}, hi{-0.59f, 0.006f, 0.005f},
+        beside{-0.6f, -0.004f, -0.015f}, beside_hi{-0.59f, 0.006f, -0.005f};
+    const auto seam = seam_in(gear("0.1"), lo, hi);
+    REQUIRE(seam);
+    CHECK((seam->solid && seam->width < 4e-6));
+    const auto within = seam_in(gear("0.1"), beside, beside_hi); // all is solid there
+    CHECK((!within || within->solid));
+    for (const char *apart : {"0.1001", "0.10001", "0.100003"}) {
+        INFO(apart);
+        CHECK_FALSE(seam_in(gear(apart), lo, hi));
+    }
+    const mesh::Mended made = mesh::make_certified_mesh(flush_scene(gear("0.1")), fine_cells(48));
+    CHECK(made.certificate.certified());
+    CHECK(made.certificate.components == 1);
+}
+
 TEST_CASE("planes along the axes are guessed where they are, and take little work then") {
     const mesh::Field field(
         flush_scene("(box_frame(1, thickness: 0.16) | sphere(0.2).translate([0.42, 0.42, 0.42]))"
@@ -206,7 +231,9 @@ TEST_CASE("numbers on the way change at least as fast as is said") {
     for (const char *text : {"box(1).rotate(0.3, axis: [1, 2, 3]) | cylinder(0.3, 2)",
                              "torus(1, 0.3).translate(x: 0.2) | sphere(0.4)",
                              "cone(0.5, 1).scale(0.7) - box(0.3).rotate(45deg, axis: Y)",
-                             "cylinder(0.1, 0.3).repeat([0.4, 0.5, 1], count: [3, 2, 1])"}) {
+                             "cylinder(0.1, 0.3).repeat([0.4, 0.5, 1], count: [3, 2, 1])",
+                             "box([0.4, 1, 0.3]).translate(x: 0.3).twist(1.5) | "
+                             "rectangle([1, 0.6]).extrude(2, twist: 200deg)"}) {
         INFO(text);
         const mesh::Field field(flush_scene(text), 0, {});
         mesh::Evaluator evaluator(field);
