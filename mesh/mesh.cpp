@@ -107,8 +107,10 @@ Failure untangle(Made &made, const Field &field, const Settings &settings, bool 
 // as before: about an edge that is sharp enough each level has crumbs of its own.
 Failure join_crumbs(Made &made, const Field &field, const Settings &settings, std::size_t most,
                     std::vector<Cell> &divided, Progress &progress) {
-    constexpr int most_rounds = 8;
+    constexpr int most_rounds = 2;
+    constexpr std::size_t few = 16; // where there are more, walls are thin or edges sharp all over
     Crumbs crumbs = find_crumbs(made.octree, made.loops);
+    if (crumbs.count > few) return Failure::None;
     struct Kept {
         std::size_t count = 0;
         Octree octree;

@@ -59,6 +59,23 @@ std::vector<std::size_t> near_surface(Evaluator &evaluator, const cpu::ShortTape
     return near;
 }
 
+// Whether slopes have one direction at more than half of the places of a box, which begin at `from`.
+bool rise_one_way(const std::array<std::vector<float>, 4> &slopes, std::size_t from) {
+    constexpr double parallel = 0.9999;
+    for (std::size_t first = from; first < from + places; ++first) {
+        std::size_t alike = 0;
+        for (std::size_t k = from; k < from + places; ++k) {
+            double product = 0;
+            for (std::size_t i = 1; i < slopes.size(); ++i)
+                product += double(slopes[i][first]) * slopes[i][k];
+            alike += product > 0 && product >= parallel * std::sqrt(squared_slope(slopes, first) *
+                                                                    squared_slope(slopes, k));
+        }
+        if (2 * alike > places) return true;
+    }
+    return false;
+}
+
 // One box that may hold a seam as far as is known.
 struct Suspect {
     std::size_t number = 0; // of the box
@@ -156,7 +173,8 @@ std::vector<Sighting> look_for_seams(Evaluator &evaluator, const cpu::ShortTape 
         gradients_at(evaluator, tape, points, slopes);
         kept.clear();
         std::vector<Suspect> left;
-        for (std::size_t k = 0; k < suspects.size(); ++k)
+        for (std::size_t k = 0; k < suspects.size(); ++k) {
+            if (step == 0) seen[suspects[k].number].one_way = rise_one_way(slopes, k * places);
             if (step_in(slopes, k * places, step, boxes[suspects[k].number], thin, suspects[k],
                         points)) {
                 kept.push_back(k * places);
@@ -164,16 +182,17 @@ std::vector<Sighting> look_for_seams(Evaluator &evaluator, const cpu::ShortTape 
             } else if (!suspects[k].crossed) {
                 seen[suspects[k].number].seen = suspects[k].solid ? Seen::AllSolid : Seen::AllEmpty;
             }
+        }
         keep_places(kept, points);
         suspects = std::move(left);
     }
     for (Suspect &suspect : suspects) {
-        seen[suspect.number].seen = suspect.solid ? Seen::AllSolid : Seen::AllEmpty;
-        if (suspect.nearest <= nearer * suspect.first) {
-            for (auto &planes : suspect.planes) std::ranges::sort(planes);
-            seen[suspect.number] = {suspect.solid ? Seen::MaySolid : Seen::MayEmpty,
-                                    std::move(suspect.planes)};
-        }
+        Sighting &sighting = seen[suspect.number];
+        sighting.seen = suspect.solid ? Seen::AllSolid : Seen::AllEmpty;
+        if (suspect.nearest > nearer * suspect.first) continue;
+        for (auto &planes : suspect.planes) std::ranges::sort(planes);
+        sighting.seen = suspect.solid ? Seen::MaySolid : Seen::MayEmpty;
+        sighting.planes = std::move(suspect.planes);
     }
     return seen;
 }

@@ -21,6 +21,8 @@ struct Sighting {
     Seen seen = Seen::NoSeam;
     // Along each axis: where planes at right angles to it seem to lie.
     std::array<std::vector<float>, 3> planes{};
+    // The field rises in one direction at more than half of the samples: it may depend on one number.
+    bool one_way = false;
 };
 
 // `thin`: of slabs, as in seam_in. The boxes share the runs of the tape, which holds in all of them.

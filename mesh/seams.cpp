@@ -409,6 +409,15 @@ void tie_alike(Across &across, const std::vector<Level> &levels, const Point &lo
     }
 }
 
+// Whether a tape takes the angle of a place, which has a cut.
+bool has_angle(const Evaluator &evaluator, const cpu::ShortTape &tape) {
+    return std::ranges::any_of(tape.steps, [&](std::uint32_t id) {
+        const cpu::Step &step = evaluator.field.parts.table[id];
+        return step.kind == cpu::StepKind::Run &&
+               cpu::kernel_of_variant(step.target) == cpu::Kernel::Atan2F;
+    });
+}
+
 } // namespace
 
 std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
@@ -420,33 +429,33 @@ std::optional<Seam> seam_in(Evaluator &evaluator, const cpu::ShortTape &tape, cp
 
 SeamSearch search_seam(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                        const Extent &box, const Sighting &sighting, double thin, bool closely) {
+    if (sighting.seen == Seen::NoSeam) return {};
     const bool far = sighting.seen == Seen::AllSolid || sighting.seen == Seen::AllEmpty;
-    if (sighting.seen == Seen::NoSeam || (far && !closely)) return {};
-    const auto &[lo, hi] = box;
     const bool solid = sighting.seen == Seen::MaySolid || sighting.seen == Seen::AllSolid;
+    const auto &[lo, hi] = box;
     Look look{evaluator, tape, boxes, solid, thin, sighting};
     Place place;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         look.directions.push_back({axis, {{}, lo[axis], hi[axis], 1, 0, {}}});
         place.ends.push_back({lo[axis], hi[axis]});
     }
+    const bool one_way = !far || sighting.one_way, cut = closely && has_angle(evaluator, tape);
     std::optional<double> width;
-    if (!far) width = look.width_in(place, 0);
+    if (one_way) width = look.width_in(place, 0);
     if (!far && !width) width = look.width_by_guesses(place, most_strips);
-    if (!width) {
+    if (!width && (!far || (closely && one_way) || cut)) {
         std::array<std::vector<float>, 4> slopes;
         slopes_in(evaluator, tape, box, slopes);
         ++look.runs;
-        std::vector<Level> levels = levels_in(evaluator, tape, boxes, lo, hi);
-        if (far) std::erase_if(levels, [](const Level &level) { return !has_cut(level); });
+        const std::vector<Level> levels = levels_in(evaluator, tape, boxes, lo, hi);
         for (const Level &level : chosen_levels(levels, slopes)) {
             look.directions.push_back({3, level});
             place.ends.push_back({level.lo, level.hi});
             tie_alike(look.directions.back(), levels, lo, hi, thin);
         }
-        if (!far && (closely || look.directions.size() > 3))
-            width = look.width_in(place, closely ? most_strips : 0);
-        if (!width && closely) width = look.width_by_cuts(place, most_strips);
+        if (one_way && (closely || look.directions.size() > 3))
+            width = look.width_in(place, closely && !far ? most_strips : 0);
+        if (!width && cut) width = look.width_by_cuts(place, most_strips);
     }
     return {width ? std::optional(Seam{look.solid, *width}) : std::nullopt, look.runs};
 }

@@ -177,6 +177,20 @@ TEST_CASE("planes that cross in an edge or a corner are found") {
     }
 }
 
+TEST_CASE("past a tool that ends a hair beyond a face nothing is in doubt") {
+    for (const char *text : {"cylinder(20, 10) - cylinder(18, 10.02)",
+                             "capped_cone(6, 40, 40) - capped_cone(4.4, 38.4, 40.02)",
+                             "(box(20) - cylinder(5, 20.01)).rotate(0.4, axis: [2, 1, 0])"}) {
+        INFO(text);
+        const mesh::Made plain = mesh::make_mesh(flush_scene(text), fine_cells(64));
+        CHECK(plain.octree.undecided.empty());
+        const mesh::Mended made = mesh::make_certified_mesh(flush_scene(text), fine_cells(64));
+        CHECK(made.certificate.certified());
+        CHECK(made.certificate.components == 1);
+        CHECK(made.certificate.divisions < 10'000);
+    }
+}
+
 TEST_CASE("parts that are flush are found where an angle has its cut") {
     // A herringbone gear: a tooth lies across the cut of the angle, turned on both sides of z = 0.
     const auto gear = [](const char *apart) {
