@@ -40,6 +40,10 @@ std::string shown_by(double thickness, const fathom::mesh::Lattice &lattice, con
                        now, tolerance, std::ceil(longest / tolerance));
 }
 
+// Of how thick something is at some places, from the least: a sharp edge is as thin as one likes
+// somewhere; of a wall all places tell its thickness.
+double lower_quarter(const std::vector<double> &thick) { return thick[thick.size() / 4]; }
+
 // What would show what lies in some cells, by samples of it: a sentence's end.
 std::string advice_of(const ir::Scene &scene, const fathom::mesh::Settings &settings,
                       const fathom::mesh::Made &made,
@@ -58,17 +62,18 @@ std::string advice_of(const ir::Scene &scene, const fathom::mesh::Settings &sett
         return "parts of the solid touch there, and rounding leaves open where each ends, which no "
                "finer mesh tells: let them overlap a little, or move them by the same transforms";
     if (thick.empty()) return "a finer mesh or a tighter bound tells more";
-    // A sharp edge is as thin as one likes somewhere; of a wall all places tell its thickness.
-    const auto quarter = thick.begin() + static_cast<std::ptrdiff_t>(thick.size() / 4);
-    std::ranges::nth_element(thick, quarter);
-    return fmt::format("a wall, a gap or a sharp edge there is about {:.2g} thick{}", *quarter,
-                       shown_by(*quarter, lattice, made.box));
+    std::ranges::sort(thick);
+    return fmt::format("a wall, a gap or a sharp edge there is about {:.2g} thick{}",
+                       lower_quarter(thick), shown_by(lower_quarter(thick), lattice, made.box));
 }
 
-// The same of cells that are drawn, where walls or gaps in many of them are thinner than they are.
+// The same of cells that are drawn: where walls or gaps in many of them are thinner than they are, and
+// where parts that are apart may be drawn as one.
 std::string advice_on_drawn(const ir::Scene &scene, const fathom::mesh::Settings &settings,
                             const fathom::mesh::Made &made) {
+    constexpr std::size_t looks = 1024;
     constexpr std::size_t many = 8; // of these, one is thin: no mere edges and points
+    constexpr std::size_t some = 8; // gaps: of one width, more or less, where no groove ends
     const fathom::mesh::Octree &octree = made.octree;
     const std::int32_t side = octree.lattice.cells(octree.lattice.level);
     std::array<std::int32_t, 3> last{-1, -1, -1}; // of a divided drawing cell one part speaks
@@ -81,19 +86,25 @@ std::string advice_on_drawn(const ir::Scene &scene, const fathom::mesh::Settings
     });
     fathom::mesh::Progress progress;
     const fathom::mesh::Field field(scene, settings.time, settings.bounds);
-    const auto found = thin_in(field, octree.lattice, cells, threads_of(settings), progress);
-    double thinnest = 0;
-    std::size_t thin = 0;
+    const auto found = thin_in(field, octree.lattice, cells, threads_of(settings), progress, looks);
+    std::vector<double> thin, gaps;
     for (std::size_t k = 0; k < found.size(); ++k) {
         const fathom::mesh::Cell &cell = cells[k * cells.size() / found.size()];
         const double thickness = found[k].thickness;
         if (!(thickness > 0 && thickness < octree.lattice.side(cell.level))) continue;
-        if (thin == 0 || thickness < thinnest) thinnest = thickness;
-        ++thin;
+        thin.push_back(thickness);
+        if (found[k].gap) gaps.push_back(thickness);
     }
-    if (many * thin < found.size() || thin == 0) return "";
-    return fmt::format("walls or gaps may have holes: one is about {:.2g} thick{}", thinnest,
-                       shown_by(thinnest, octree.lattice, made.box));
+    std::ranges::sort(thin);
+    std::ranges::sort(gaps);
+    if (!thin.empty() && many * thin.size() >= found.size())
+        return fmt::format("walls or gaps may have holes: one is about {:.2g} thick{}",
+                           lower_quarter(thin),
+                           shown_by(lower_quarter(thin), octree.lattice, made.box));
+    if (gaps.size() < some || lower_quarter(gaps) < 0.5 * gaps.back()) return "";
+    return fmt::format("parts that are apart may be drawn as one: a gap is about {:.2g} wide{}",
+                       lower_quarter(gaps),
+                       shown_by(lower_quarter(gaps), octree.lattice, made.box));
 }
 
 Mesh refused(const fathom::mesh::Made &made, const ir::Scene &scene,

@@ -11,7 +11,7 @@ using Real3 = std::array<double, 3>;
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double rounding_share = 1e-9; // what rounding may take of a sum, by the size of its terms
-constexpr int most_levels = 6;
+constexpr int least_levels = 2, most_levels = 6;
 constexpr std::size_t sampled = 256; // leaves whose tapes say what dividing takes
 
 struct Piece {
@@ -141,7 +141,8 @@ Piece piece_of(const Lattice &lattice, const Cell &leaf) {
             point_of(lattice, corner(leaf.at, lattice.cells(leaf.level), 7))};
 }
 
-// How often open leaves are divided: as the work allows, by four parts of each that stay open.
+// How often open leaves are divided: as the work allows, by four parts of each that stay open, but twice
+// at least, so that smaller leaves say more.
 int levels_for(const Field &field, const Octree &octree, const std::vector<Cell> &leaves,
                double most_work) {
     Splitter splitter(field);
@@ -152,7 +153,8 @@ int levels_for(const Field &field, const Octree &octree, const std::vector<Cell>
     if (count == 0) return 0;
     cost *= 16 * static_cast<double>(leaves.size()) / count;
     int levels = 0;
-    for (double work = cost; levels < most_levels && work <= most_work; work += cost) {
+    for (double work = cost; levels < least_levels || (levels < most_levels && work <= most_work);
+         work += cost) {
         ++levels;
         cost *= 4;
     }

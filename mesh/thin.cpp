@@ -27,6 +27,7 @@ Thin thin_at(Evaluator &evaluator, const Lattice &lattice, double side, const Po
     if (!(rate > 0 && std::isfinite(rate))) return {};
     for (double &x : way) x /= rate;
     double middle = 0, step = 2 * side / look_steps, thickness = 0; // as far as it is known
+    bool gap = false;
     std::vector<float> values;
     for (int look = 0; look < most_looks && step > 4 * lattice.ulp; ++look, step *= closer) {
         points.clear();
@@ -42,8 +43,10 @@ Thin thin_at(Evaluator &evaluator, const Lattice &lattice, double side, const Po
             if (std::fabs(values[j]) < std::fabs(values[static_cast<std::size_t>(nearest)]))
                 nearest = k;
             if (k == 0 || (values[j] <= 0) == (values[j - 1] <= 0)) continue;
-            if (from >= 0 && (thinnest == 0 || k - from < thinnest))
+            if (from >= 0 && (thinnest == 0 || k - from < thinnest)) {
                 thinnest = k - from, thin_from = from;
+                gap = values[j - 1] > 0;
+            }
             from = k;
         }
         if (thinnest > 0) thickness = thinnest * step;
@@ -56,12 +59,12 @@ Thin thin_at(Evaluator &evaluator, const Lattice &lattice, double side, const Po
         }
         middle += ((thinnest > 0 ? thin_from : nearest) - look_steps / 2) * step;
     }
-    return {thickness, thickness == 0};
+    return {thickness, gap && thickness > 0, thickness == 0};
 }
 
 std::vector<Thin> thin_in(const Field &field, const Lattice &lattice, std::span<const Cell> cells,
-                          unsigned threads, Progress &progress) {
-    const std::size_t count = std::min(cells.size(), most_places);
+                          unsigned threads, Progress &progress, std::size_t most) {
+    const std::size_t count = std::min(cells.size(), most);
     std::vector<Thin> found(count);
     in_parallel(
         count, threads, progress, [&] { return Evaluator(field); },

@@ -77,6 +77,13 @@ TEST_CASE(
     CHECK(contains(vase.out, "{\"status\":\"certified\","));
     CHECK(contains(vase.err, "walls or gaps may have holes: one is about 0.02"));
     CHECK(shell(folder, "fathom mesh vase.sdf --resolution 128 --json -o a.stl").err.empty());
+    // few cells see the gap about a pin, and it is closed in them
+    folder.write("pin.sdf", "box([6, 4, 4]) - cylinder(0.5, 1.52) | cylinder(0.46, 1.4)\n");
+    for (const char *more : {"", " --json"})
+        CHECK(contains(
+            shell(folder, std::string("fathom mesh pin.sdf --resolution 40 -o a.stl") + more).err,
+            "parts that are apart may be drawn as one: a gap is about 0.04 wide"));
+    CHECK(shell(folder, "fathom mesh pin.sdf --resolution 300 -o a.stl").err.empty());
 }
 
 TEST_CASE("--simplify writes fewer triangles, and the certificate is of these") {
