@@ -4,6 +4,7 @@
 #include "driver/watch.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <thread>
 
 namespace fathom::v1 {
@@ -46,6 +47,14 @@ std::string write_files(const std::vector<FileBytes> &files, std::size_t &failed
 
 int write_all(int descriptor, std::string_view bytes) {
     return driver::write_all(descriptor, bytes);
+}
+
+int make_temporary(const std::filesystem::path &target, std::string &name) {
+    return guarded([&] { return driver::make_temporary(target, name); },
+                   [](const Diagnostic &) {
+                       errno = ENOMEM;
+                       return -1;
+                   });
 }
 
 std::string error_words(int error) { return driver::error_words(error); }

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <sstream>
 
 namespace fathom::cli {
 namespace {
@@ -550,13 +551,23 @@ std::string in_our_words(Reader &reader, const CLI::ParseError &error) {
     const std::vector<CLI::App *> chosen = reader.app.get_subcommands();
     CLI::App &app = chosen.empty() ? reader.app : *chosen.front();
     std::vector<std::string> left = app.remaining();
-    if (left.empty()) left = {rest};
-    const std::string word = left.front().substr(0, left.front().find('='));
-    if (word.size() < 2 || word[0] != '-')
-        return fmt::format("`{}` is a word too many", left.front());
+    if (left.empty()) { // CLI11 lists them from the last
+        std::istringstream words(rest);
+        for (std::string word; words >> word;) left.insert(left.begin(), word);
+    }
+    if (left.empty()) return said;
     std::vector<std::string> names;
-    for (const CLI::Option *one : app.get_options([](CLI::Option *) { return true; }))
+    for (const CLI::Option *one : app.get_options([](CLI::Option *) { return true; })) {
         for (const std::string &name : one->get_lnames()) names.push_back("--" + name);
+        for (const std::string &name : one->get_snames()) names.push_back("-" + name);
+    }
+    const auto name_of = [](const std::string &word) { return word.substr(0, word.find('=')); };
+    const auto unknown = std::ranges::find_if(left, [&](const std::string &word) {
+        return word.size() > 1 && word[0] == '-' &&
+               std::ranges::find(names, name_of(word)) == names.end();
+    });
+    if (unknown == left.end()) return fmt::format("`{}` is a word too many", left.front());
+    const std::string word = name_of(*unknown);
     const std::string near = nearest_name(word, names);
     return fmt::format("there is no option `{}`{}", word,
                        near.empty() ? "" : fmt::format("; did you mean `{}`?", near));

@@ -13,7 +13,6 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -110,12 +109,8 @@ std::unique_ptr<Film> Film::open(const std::string &out, int width, int height, 
                                  std::string &error) {
     std::unique_ptr<Film> film(new Film);
     film->target_ = out;
-    const fs::path path(out);
-    // The name and the lock are those of results that are being written (v1::write_file): what
-    // a kill leaves, the next process that writes into the folder removes.
-    std::string name =
-        (path.parent_path() / ("." + path.filename().string() + ".fathom-tmpXXXXXX")).string();
-    film->lock_ = ::mkostemp(name.data(), O_CLOEXEC);
+    std::string name;
+    film->lock_ = v1::make_temporary(out, name);
     if (film->lock_ < 0) {
         error = v1::error_words(errno);
         return nullptr;
@@ -125,7 +120,6 @@ std::unique_ptr<Film> Film::open(const std::string &out, int width, int height, 
     const mode_t mask = ::umask(0);
     ::umask(mask);
     (void)::fchmod(film->lock_, 0666 & ~mask);
-    ::flock(film->lock_, LOCK_EX | LOCK_NB);
     std::array<int, 2> frames{-1, -1};
     film->words_ = system::open_memory(); // who writes there never waits
     if (film->words_ < 0 || !system::open_pipe(frames)) {

@@ -25,6 +25,7 @@ class Descriptor {
         if (fd_ >= 0) ::close(fd_);
     }
     int get() const { return fd_; }
+    bool open(int fd) { return (fd_ = fd) >= 0; } // of one that is closed
     // Closing is where some file systems report that the disk is full.
     int close() {
         int result = ::close(fd_);
@@ -187,28 +188,34 @@ void sweep(const std::filesystem::path &folder) {
     }
 }
 
-// A new file beside the target, locked while it is open; -1 and errno. One that another process
-// swept before the lock was ours is made again.
-int locked_temporary(const std::string &pattern, std::string &name) {
+} // namespace
+
+int make_temporary(const std::filesystem::path &target, std::string &name) {
+    const std::filesystem::path folder = target.parent_path();
+    const std::string pattern =
+        (folder / ("." + target.filename().string() + std::string(temporary_mark) +
+                   std::string(temporary_tail, 'X')))
+            .string();
     for (;;) {
         name = pattern;
         const int file = ::mkostemp(name.data(), O_CLOEXEC);
         if (file < 0) return -1;
+        // Who sweeps the folder holds the lock until the file is gone: it is waited for.
+        while (::flock(file, LOCK_EX) != 0 && errno == EINTR) {
+        }
         struct stat status {};
-        ::flock(file, LOCK_EX | LOCK_NB);
         if (::fstat(file, &status) == 0 && status.st_nlink > 0) return file;
         ::close(file);
     }
 }
 
-} // namespace
-
 namespace {
 
-// The whole of a file beside its target. Removed where it was not renamed.
+// The whole of a file beside its target, locked until it is renamed. Removed where it was not.
 struct Prepared {
     std::filesystem::path target;
-    std::string temporary;
+    std::string temporary{};
+    Descriptor lock{-1};
     ~Prepared() {
         if (!temporary.empty()) ::unlink(temporary.c_str());
     }
@@ -238,13 +245,10 @@ std::string prepare(std::string_view bytes, Prepared &prepared) {
     const std::filesystem::path folder = target.parent_path().empty() ? "." : target.parent_path();
     sweep(folder);
     std::string temporary;
-    Descriptor file(
-        locked_temporary((folder / ("." + target.filename().string() + std::string(temporary_mark) +
-                                    std::string(temporary_tail, 'X')))
-                             .string(),
-                         temporary));
+    Descriptor file(make_temporary(folder / target.filename(), temporary));
     if (file.get() < 0) return error_words(errno);
     prepared.temporary = temporary;
+    if (!prepared.lock.open(::fcntl(file.get(), F_DUPFD_CLOEXEC, 0))) return error_words(errno);
     const mode_t mask = ::umask(0);
     ::umask(mask);
     const mode_t mode = exists ? (old.st_mode & 07777) : (0666 & ~mask);
@@ -272,7 +276,7 @@ std::string write_files(const std::vector<FileBytes> &files, std::size_t &failed
         const std::filesystem::path target = followed(named);
         if (target.empty()) return error_words(ELOOP);
         const bool in_place = written_in_place(target, bytes, why);
-        if (!in_place) why = prepare(bytes, all.emplace_back(Prepared{target, ""}));
+        if (!in_place) why = prepare(bytes, all.emplace_back(target));
         if (!why.empty()) return why;
     }
     failed = 0;

@@ -54,6 +54,10 @@ struct FileBytes {
 };
 std::string write_files(const std::vector<FileBytes> &files, std::size_t &failed);
 
+// A new file beside the target, which no other process sweeps as long as it is open (it is locked), and
+// its name; -1 and errno.
+int make_temporary(const std::filesystem::path &target, std::string &name);
+
 // Writes all of `bytes` to a descriptor; 0, or the errno of the failure.
 int write_all(int descriptor, std::string_view bytes);
 

@@ -1,6 +1,7 @@
 // The whole check: the library, the scene's file, what it contributes, and the scene put together.
 #include "typecheck/check.h"
 
+#include "base/suggest.h"
 #include "lang/parse.h"
 #include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
@@ -11,6 +12,7 @@
 #include "ir/passes/walk.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <new>
@@ -289,11 +291,16 @@ Checked check(Sources &sources, SourceId root, const std::string &root_identity,
         build_scene(ev, contributions, ast, m.frame);
         tell_hiding_functions(ev);
         for (const Override &o : options.overrides) {
-            bool known = false;
-            for (const ir::Param &p : ev.scene.params) known = known || p.name == o.name;
-            if (!known)
-                ev.usage_errors.push_back(
-                    fmt::format("-D {}: the scene has no parameter of this name", o.name));
+            std::vector<std::string> names;
+            for (const ir::Param &p : ev.scene.params) names.push_back(p.name);
+            if (std::ranges::find(names, o.name) != names.end()) continue;
+            const std::string near = nearest_name(o.name, names);
+            const std::string way = !near.empty() ? fmt::format("; did you mean `{}`?", near)
+                                    : names.empty()
+                                        ? "; it has none"
+                                        : fmt::format("; it has `{}`", fmt::join(names, "`, `"));
+            ev.usage_errors.push_back(
+                fmt::format("-D {}: the scene has no parameter of this name{}", o.name, way));
         }
         out.names = name_facts(ev, m.frame, root);
         out.scene = std::move(ev.scene);

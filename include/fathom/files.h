@@ -53,6 +53,10 @@ FATHOM_API std::string write_files(const std::vector<FileBytes> &files, std::siz
 /** Writes all bytes to an open descriptor. 0, or the `errno` of the failure. */
 FATHOM_API int write_all(int descriptor, std::string_view bytes);
 
+/** A new file beside `target`, under a hidden name: a descriptor, and the name. It stays while it is open;
+    what a kill leaves of it, the next write into the folder removes. -1, and `errno`. */
+FATHOM_API int make_temporary(const std::filesystem::path &target, std::string &name);
+
 /** An `errno` in words, the same in every locale. */
 FATHOM_API std::string error_words(int error);
 

@@ -302,6 +302,10 @@ TEST_CASE("words that have no place are told as such") {
                        std::string("not `") + number + "`"));
     CHECK(contains(said("eval good.sdf --at 0,1e30,0"), "none beyond 1e18"));
     CHECK(shell(folder, "printf '1 nan 0' | fathom eval good.sdf --points -").exit == 2);
+    CHECK(contains(said("render good.sdf -o x.png --sze 10x10"),
+                   "there is no option `--sze`; did you mean `--size`?"));
+    CHECK(contains(said("measure --tolerence 3 good.sdf"),
+                   "there is no option `--tolerence`; did you mean `--tolerance`?"));
     CHECK(contains(said("explain loop-limit x"), "`x` is a word too many"));
     CHECK(contains(said("check good.sdf --stritc-proof"),
                    "there is no option `--stritc-proof`; did you mean `--strict-proof`?"));

@@ -413,3 +413,13 @@ TEST_CASE("GLSL ES says in words which values its uniforms want") {
     CHECK(line.ends_with("0.1..0.5"));
     CHECK(contains(shell(folder, "fathom compile counted.sdf").out, "uniforms' defaults"));
 }
+
+TEST_CASE("commands that write into one folder at a time leave each other's files alone") {
+    ScratchFolder folder;
+    folder.write("ball.sdf", "sphere(1)\n");
+    const Result all = shell(folder, "for i in $(seq 40); do fathom mesh ball.sdf --resolution 8 "
+                                     "-o many$i.obj & done; wait");
+    CHECK(all.err == "");
+    for (int k = 1; k <= 40; ++k)
+        CHECK_FALSE(folder.read("many" + std::to_string(k) + ".obj").empty());
+}
