@@ -17,7 +17,6 @@ namespace {
 constexpr int max_cases = 600, max_forks = 40;
 constexpr double rounding_of_squares = 1e-12; // what double precision loses
 constexpr double rounding_of_terms = 1e-12;   // what is lost of terms on the way (cases.cpp)
-constexpr double granted_to_unknown = 1e-12;  // beside what may have any size
 
 } // namespace
 
@@ -136,83 +135,6 @@ std::optional<bool> Cases::vectors_agree(int sides) {
     return true;
 }
 
-bool Cases::are_equal(const Sum &a, const Sum &b) {
-    const Sum apart = add(a, b, -1), gap = cleared(apart);
-    if (gap.empty()) return true;
-    if (is_rounding(apart, a, b, granted_to_sides)) {
-        grant(!is_rounding(apart, a, b, granted_to_doubles));
-        return true;
-    }
-    const auto number = [](const Sum &sum) {
-        const auto it = sum.find({});
-        return it == sum.end() ? 0 : std::min(std::fabs(it->second), most_size_at(0));
-    };
-    const double numbers = gap == apart ? std::min(number(a), number(b)) : 0;
-    const auto is_at_most = [&](double slack) { // of the gap's size
-        return impossible(case_, {gap, true, slack}) &&
-               impossible(case_, {add({}, gap, -1), true, slack});
-    };
-    if (is_at_most(granted_to_sides * numbers)) {
-        grant(numbers > 0 && !is_at_most(granted_to_doubles * numbers));
-        return true;
-    }
-    return split_sizes_ && are_equal_on_line(a, b); // what that grants is not asked on (2.42)
-}
-
-void Cases::grant(bool granted) { looked_.granted = looked_.granted || granted; }
-
-std::optional<Interval> Cases::range_near(std::uint32_t a, Enclosed &box, double distance) const {
-    const Atom &atom = atoms_[a];
-    const auto of_sum = [&](const Sum &sum) -> std::optional<Interval> {
-        Interval out;
-        for (const auto &[m, c] : sum) {
-            Interval term = c;
-            for (std::size_t i = 0; i < m.size(); ++i) {
-                const auto one = range_near(m[i], box, distance);
-                if (!one) return {};
-                const bool twice = i + 1 < m.size() && m[i] == m[i + 1];
-                term = term * (twice ? square(*one) : *one);
-                i += twice;
-            }
-            out += term;
-        }
-        return out;
-    };
-    if (coordinates_.contains(a)) return Interval(-distance, distance);
-    if (atom.below) {
-        const auto below = of_sum(*atom.below);
-        return below ? std::optional(sqrt(*below)) : std::nullopt;
-    }
-    if (atom.square) {
-        const auto square = of_sum(*atom.square);
-        return square ? std::optional(sqrt(*square)) : std::nullopt;
-    }
-    if (atom.range) return atom.range;
-    const auto node = nodes_.find(a);
-    if (node == nodes_.end()) return {};
-    const Interval range = box.of(node->second.first, node->second.second);
-    return range.finite() ? std::optional(range) : std::nullopt;
-}
-
-// Beside both sides, at all distances from the origin, or from where the claim's parts lie.
-bool Cases::is_rounding(const Sum &gap, const Sum &a, const Sum &b, double granted) {
-    for (int scale = least_scale; scale <= far_scale; ++scale) {
-        looked_.take(64 * (gap.size() + a.size() + b.size()));
-        const double distance = distance_at(scale);
-        std::array<Interval, 3> box;
-        for (std::size_t i = 0; i < 3; ++i)
-            box[i] = (axes_ ? axes_->origin[i] : 0) + Interval(-2 * distance, 2 * distance);
-        Enclosed enclosed(graph_, looked_.ranges, box);
-        const auto factor = [&](std::uint32_t f) {
-            return KnownFactor{range_near(f, enclosed, distance), atoms_[f].held};
-        };
-        if (!is_rounding_beside(gap, a, b, granted, granted_to_unknown, most_size_at(distance),
-                                factor))
-            return false;
-    }
-    return true;
-}
-
 bool Cases::are_equal_on_line(const Sum &a, const Sum &b) {
     std::vector<Sum> rows;
     for (const Sum &sum : case_.at_least_0) rows.push_back(reduced(sum, case_));
@@ -272,12 +194,20 @@ Sum Cases::with_square(const Sum &sum, std::uint32_t r, const Sum &square) {
 
 bool Cases::impossible(const Case &c, const Inequality &more) {
     std::vector<Inequality> all;
-    for (const Sum &sum : c.at_least_0) all.push_back({reduced(sum, c), false});
-    if (!more.sum.empty()) all.push_back({reduced(more.sum, c), more.strict});
+    for (const Sum &sum : c.at_least_0) {
+        Inequality row{reduced(sum, c), false};
+        if (std::ranges::none_of(all, [&](const auto &one) { return one.sum == row.sum; }))
+            all.push_back(std::move(row));
+    }
+    if (!more.sum.empty()) all.push_back({reduced(more.sum, c), more.strict, more.slack});
     for (const auto &[a, sum] : c.solved) // an atom that is none any more keeps its sign
         if (atoms_[a].never_negative) all.push_back({reduced(sum, c), false});
     if (by_inverses_)
-        for (Inequality &row : all) row.sum = cleared(row.sum);
+        for (Inequality &row : all) {
+            Sum whole = cleared(row.sum);
+            if (row.slack > 0 && whole != row.sum) return false; // of another size
+            row.sum = std::move(whole);
+        }
     add_sectors(all, c);
     const auto contradicted = [&] {
         std::vector<Product> positive;
@@ -292,6 +222,7 @@ bool Cases::impossible(const Case &c, const Inequality &more) {
         return out;
     };
     if (contradicted()) return true;
+    if (more.slack > 0) return false; // of products of rows the numbers may be large beside it
     const std::size_t rows = all.size();
     add_products(all);
     if (all.size() > rows && contradicted()) return true;
@@ -427,8 +358,7 @@ bool is_count(const Graph &graph, NodeId root) {
 }
 
 bool is_proved_alike(Graph &graph, const Claim &claim, Looked &looked) {
-    looked.granted = false;
-    looked.places.clear();
+    looked.begin();
     Cases attempt(graph, {}, looked, near_parts(graph, claim));
     const bool holds = attempt.hold_alike(claim);
     looked.cases += attempt.count();
@@ -436,6 +366,20 @@ bool is_proved_alike(Graph &graph, const Claim &claim, Looked &looked) {
 }
 
 namespace {
+
+// From the origin, of what is known by distances that are at most so large in a box about it.
+template <class Reach> Apart seen_from(const Apart &apart, const Reach &reach) {
+    Apart out{};
+    for (int scale = least_scale; scale <= far_scale; ++scale) {
+        std::array<Interval, 3> box;
+        box.fill(Interval(-distance_at(scale), distance_at(scale)));
+        const double distance = reach(box);
+        int to = least_scale;
+        while (to < far_scale && distance_at(to) < distance) ++to;
+        out[std::size_t(scale - least_scale)] = apart[std::size_t(to - least_scale)];
+    }
+    return out;
+}
 
 bool is_proved_as_it_is(Graph &graph, const Claim &claim, Looked &looked, double reach) {
     const bool near = looked.near;
@@ -446,13 +390,21 @@ bool is_proved_as_it_is(Graph &graph, const Claim &claim, Looked &looked, double
             for (const bool sizes : {false, true}) {
                 if (inverses && !met_held) return false;
                 looked.near = near;
-                looked.granted = false;
+                looked.begin();
                 Cases attempt(graph, {sizes, inverses, products, reach}, looked, axes);
                 const bool holds = attempt.hold(claim);
                 looked.cases += attempt.count();
                 met_held = met_held || attempt.met_held();
                 met_product = met_product || attempt.met_product();
-                if (holds) return true;
+                if (!holds) continue;
+                if (axes)
+                    looked.apart = seen_from(looked.apart, [&](const auto &box) {
+                        double squares = 0;
+                        for (std::size_t i = 0; i < 3; ++i)
+                            squares += square(box[i] - Interval(axes->origin[i])).hi;
+                        return std::sqrt(squares);
+                    });
+                return true;
             }
         return false;
     };
@@ -468,9 +420,17 @@ bool is_proved_as_it_is(Graph &graph, const Claim &claim, Looked &looked, double
 } // namespace
 
 bool is_proved(Graph &graph, const Claim &claim, Looked &looked) {
-    looked.places.clear();
     for (const Inside &inside : seen_from_inside(graph, claim))
-        if (is_proved_as_it_is(graph, inside.claim, looked, inside.reach)) return true;
+        if (is_proved_as_it_is(graph, inside.claim, looked, inside.reach)) {
+            looked.apart = seen_from(looked.apart, [&](const std::array<Interval, 3> &box) {
+                Enclosed enclosed(graph, looked.ranges, box);
+                double size = 0;
+                for (int i = 0; i < ir::components(graph[inside.vector].type); ++i)
+                    size = std::max(size, enclosed.of(inside.vector, i).magnitude());
+                return size;
+            });
+            return true;
+        }
     return is_proved_as_it_is(graph, claim, looked, near_enough);
 }
 

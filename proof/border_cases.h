@@ -31,11 +31,15 @@ struct Looked {
         left -= std::min(left, steps);
     }
     bool spent() const { return left == 0 || work.spent(); }
+    Apart moved{};     // by what is granted, the field
     bool near = false; // a proof holds where no coordinate is above `near_enough` alone (on_line.h)
-    // Of the last proof: were sides taken for equal that differ, though by little? `places`: which of
-    // its numbers are taken for 0, and what they are at most; else it is what the claim is of.
-    bool granted = false;
+    // Of the last proof: which numbers, beside what the claim is of, it takes for equal on all sides
+    // though they differ a little, and by how much.
+    bool beside = false; // as of Granted
+    Apart apart{};
     std::vector<Granted> places{};
+    void begin() { beside = false, apart = {}, places.clear(); }
+    bool granted() const { return beside || apart.back() > 0; }
 };
 
 // A number, or a comparison of such, that is made of signs, steps, truths and constants alone: it
@@ -46,6 +50,7 @@ bool is_count(const ir::Graph &graph, ir::NodeId id);
 // each is enough. `reach`: what no coordinate of it is beyond, near enough to the origin (tape.h).
 struct Inside {
     Claim claim;
+    ir::NodeId vector;
     double reach;
 };
 std::vector<Inside> seen_from_inside(ir::Graph &graph, const Claim &claim);

@@ -76,7 +76,7 @@ std::optional<std::vector<NodeId>> comparisons_of(const Graph &graph, NodeId con
 }
 
 bool is_carried_up(const Graph &graph, NodeId field, const Granted &granted, Looked &looked) {
-    const Carried to = is_carried(graph, field, granted, looked.ranges, looked.work);
+    const Carried to = is_carried(graph, field, granted, looked.ranges, looked.work, looked.moved);
     looked.near = looked.near || to == Carried::Near;
     return to != Carried::Nowhere;
 }
@@ -85,7 +85,8 @@ bool is_carried_up(const Graph &graph, NodeId field, const Granted &granted, Loo
 // differ a little?
 bool is_proved_of(NodeId field, Graph &graph, const Claim &claim, Looked &looked) {
     return is_proved(graph, claim, looked) &&
-           (!looked.granted || is_carried_up(graph, field, {claim.of}, looked));
+           (!looked.granted() ||
+            is_carried_up(graph, field, {claim.of, looked.beside, looked.apart}, looked));
 }
 
 // Does `of` have one value on every border of the choice?
@@ -237,10 +238,12 @@ Meeting find_choices(Flattening &context, NodeId root) {
         }
         NodeId of = graph[choice].op == Op::Select ? choice : field.through[choice];
         for (int climb = 0; climb < max_climb && looked.cases < max_cases_of_field; ++climb) {
+            const Apart moved = looked.moved;
             if (meets(root, graph, choice, of, looked)) {
                 out.choices.insert(choice);
                 break;
             }
+            looked.moved = moved;
             if (of == root) break;
             of = field.through[of];
         }
@@ -254,6 +257,7 @@ Meeting find_choices(Flattening &context, NodeId root) {
             }))
             out.choices.insert(choice);
     out.near = looked.near;
+    out.moved = looked.moved;
     return out;
 }
 

@@ -2,13 +2,15 @@
 
 #include "ir/interval.h"
 #include "ir/noise.h"
-#include "proof/enclosed.h"
+#include "proof/exact.h"
 #include "proof/machine.h"
 #include "proof/work.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace fathom::proof {
@@ -26,6 +28,7 @@ constexpr std::size_t max_nodes_carried = 2'000;
 struct Moved {
     const Graph &graph;
     Enclosed values;
+    bool stand = false;                          // choices and steps do
     std::unordered_map<NodeId, double> errors{}; // of what the granted value moves
 
     double error(NodeId id) const {
@@ -80,12 +83,42 @@ struct Moved {
     double of_noise(NodeId x, double slope) const {
         return slope * std::sqrt(components(x)) * error(x);
     }
+    std::optional<double> standing(NodeId id);
     double carried(NodeId id);
 };
+
+// What stands where it is, though its argument moves.
+std::optional<double> Moved::standing(NodeId id) {
+    constexpr ir::OpSet stands{Op::Sign,  Op::Step,  Op::Less,     Op::LessEqual, Op::Equal,
+                               Op::Floor, Op::Ceil,  Op::Round,    Op::Trunc,     Op::NotEqual,
+                               Op::And,   Op::Or,    Op::Not,      Op::Hash,      Op::ToInt,
+                               Op::Param, Op::Time,  Op::Var,      Op::Point,     Op::Image,
+                               Op::Grid,  Op::Const, Op::TableRead};
+    const ir::Node node = graph[id];
+    if (stands[node.op]) return 0.0;
+    if (node.op == Op::ToFloat || node.op == Op::Fract) return error(graph.arg(id, 0));
+    if (node.op == Op::Select) return std::max(error(graph.arg(id, 1)), error(graph.arg(id, 2)));
+    if (node.op == Op::Mod) { // x - m n
+        const NodeId m = graph.arg(id, 1);
+        const double least = enclosed(m).mignitude();
+        if (error(m) > 0 && !(least > 0)) return infinity;
+        const double turns = error(m) > 0 ? size(graph.arg(id, 0)) / least + 1 : 0;
+        return error(graph.arg(id, 0)) + times(turns, error(m));
+    }
+    if (node.op == Op::Normalize) {
+        const NodeId q = graph.arg(id, 0);
+        double squares = 0;
+        for (int i = 0; i < components(q); ++i) squares += square(values.of(q, i)).lo;
+        return squares > 0 ? std::sqrt(components(q)) * error(q) / std::sqrt(squares) : infinity;
+    }
+    return {};
+}
 
 double Moved::carried(NodeId id) {
     const ir::Node node = graph[id];
     const auto arg = [&](int k) { return graph.arg(id, k); };
+    if (stand)
+        if (const auto is = standing(id)) return *is;
     double most = 0;
     for (const NodeId a : graph.args(id)) most = std::max(most, error(a));
     if (!std::isfinite(most)) return infinity;
@@ -212,9 +245,37 @@ std::vector<NodeId> users_of(const Graph &graph, NodeId field, NodeId at) {
 
 } // namespace
 
+double written_off(const Graph &graph, NodeId value, Enclosed values, Work &work) {
+    std::vector<NodeId> all, todo{value};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        all.push_back(id);
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    if (all.size() > max_nodes_carried) return infinity;
+    work.take(16 * all.size());
+    std::sort(all.begin(), all.end());
+    Moved moved{graph, std::move(values), true};
+    for (const NodeId id : all) {
+        double off = 0;
+        if (graph.is_constant(id)) {
+            for (int i = 0; i < ir::components(graph[id].type); ++i) {
+                const double x = graph.constant_of(id).value[static_cast<std::size_t>(i)];
+                if (!is_of_few_bits(x)) off = std::max(off, written_of_numbers * std::fabs(x));
+            }
+        } else {
+            off = moved.carried(id);
+        }
+        moved.errors[id] = off;
+    }
+    return moved.error(value);
+}
+
 Carried is_carried(const Graph &graph, NodeId field, const Granted &granted, const Ranges *ranges,
-                   Work &work) {
-    if (granted.at == field && granted.apart == 0) return Carried::Everywhere;
+                   Work &work, Apart &moved) {
     const std::vector<NodeId> users = users_of(graph, field, granted.at);
     if (users.size() > max_nodes_carried) return Carried::Nowhere;
     Carried out = Carried::Nowhere;
@@ -222,19 +283,45 @@ Carried is_carried(const Graph &graph, NodeId field, const Granted &granted, con
         constexpr std::size_t of_node = 16;
         work.take(of_node * (users.size() + 1));
         if (work.spent()) return Carried::Nowhere;
+        const auto index = std::size_t(scale - least_scale);
         const double distance = distance_at(scale);
+        const double most = granted_to_sides * most_size_at(distance);
         std::array<Interval, 3> box;
         box.fill(Interval(-distance, distance));
-        Moved moved{graph, Enclosed(graph, ranges, box)};
-        moved.errors[granted.at] =
-            granted.apart > 0
-                ? granted.apart
-                : granted_to_sides * std::min(moved.size(granted.at), most_size_at(distance));
-        for (const NodeId id : users) moved.errors[id] = moved.carried(id);
-        if (!(moved.error(field) <= granted_to_sides * most_size_at(distance))) return out;
+        const Enclosed values(graph, ranges, box);
+        const auto carried = [&](double off) {
+            Moved from{graph, values};
+            from.errors[granted.at] = off;
+            for (const NodeId id : users) from.errors[id] = from.carried(id);
+            return from.error(field);
+        };
+        double all = granted.apart[index] > 0 ? carried(granted.apart[index]) : 0;
+        moved[index] = std::max(moved[index], all);
+        if (granted.beside && granted.at != field) {
+            const double size = Moved{graph, values}.size(granted.at);
+            all = carried(std::max(granted.apart[index], std::min(granted_to_sides * size, most)));
+        }
+        if (!(all <= most)) return out;
         if (distance >= near_enough) out = Carried::Near;
     }
     return Carried::Everywhere;
+}
+
+bool is_unseen(const Apart &apart, const std::array<Interval, 3> *region) {
+    constexpr double of_region = 2e-5; // of what it is from its middle to its sides
+    double reach = 0, half = 0;
+    if (region)
+        for (const Interval &side : *region) {
+            reach = std::max(reach, side.magnitude());
+            half = std::max(half, side.width() / 2);
+        }
+    const bool ends = region && std::isfinite(reach);
+    for (int scale = least_scale; scale <= far_scale; ++scale) {
+        const double distance = distance_at(scale), off = apart[std::size_t(scale - least_scale)];
+        if (off > (ends ? of_region * half : most_written_at(distance))) return false;
+        if (ends ? distance >= reach : distance >= near_enough) return true;
+    }
+    return true;
 }
 
 } // namespace fathom::proof

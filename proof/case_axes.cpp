@@ -248,7 +248,7 @@ std::vector<Inside> seen_from_inside(Graph &graph, const Claim &claim) {
     std::vector<Inside> out;
     for (const NodeId id : chosen)
         if (const auto inside = bases.seen_through(claim, id))
-            out.push_back({*inside, std::max(bases.reach(id), near_enough)});
+            out.push_back({*inside, id, std::max(bases.reach(id), near_enough)});
     return out;
 }
 

@@ -115,7 +115,9 @@ bool Cases::is_0(NodeId id) {
         }
         if (most > granted_to_doubles * size) { // its sign may turn there
             const double apart = 2 * std::sqrt(ir::components(graph_[arg(0)].type)) * most;
-            looked_.places.push_back({id, node.op == Op::Length ? apart : apart * apart});
+            Granted place{id, false};
+            place.apart.fill(node.op == Op::Length ? apart : apart * apart);
+            looked_.places.push_back(place);
         }
         return true;
     }

@@ -116,9 +116,16 @@ class Cases {
     bool are_equal(const Sum &a, const Sum &b);
     // gap = a - b, at most `granted` of both
     bool is_rounding(const Sum &gap, const Sum &a, const Sum &b, double granted);
-    void grant(bool granted); // for the field to be asked what comes of it (carried.h)
+    // The same by the case's inequalities.
+    bool is_at_most(const Sum &gap, const Sum &a, const Sum &b);
+    bool differs_by_at_most(const Case &c, const Sum &gap, double slack);
+    void grant(const Sum &gap);
+    double granted_near(const Sum &a, const Sum &b, double distance);
     // Of an atom that is no further from the axes' origin than this; `box` has the points there.
     std::optional<Interval> range_near(std::uint32_t a, Enclosed &box, double distance) const;
+    std::optional<Interval> range_near(const Sum &sum, Enclosed &box, double distance) const;
+    Enclosed enclosed_near(double distance) const;
+    Case with_ranges(const Case &c, double distance);
 
     // Where all that is left hangs on one number.
     bool are_equal_on_line(const Sum &a, const Sum &b);

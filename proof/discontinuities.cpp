@@ -233,10 +233,16 @@ Notes notes_of(Graph &graph, const Cell *region) {
     return out;
 }
 
-// Does a hash, or a sine, tell cells apart? Else no cases are needed, or none help.
+// Does a hash, or a sine, tell cells apart, or an `if` the parts of one? Else no cases are needed, or
+// none help.
 bool tells_cells_apart(const Graph &graph, const std::vector<NodeId> &nodes) {
     constexpr ir::OpSet of_cells{Op::Hash, Op::Sin, Op::Cos};
+    const auto reads_step = [&](NodeId of) {
+        return std::ranges::any_of(reached(graph, of, false),
+                                   [&](NodeId id) { return is_step[graph[id].op]; });
+    };
     return std::ranges::any_of(nodes, [&](NodeId id) {
+        if (graph[id].op == Op::Select && reads_step(graph.arg(id, 0))) return true;
         return of_cells[graph[id].op] && graph.reads(id).point &&
                std::ranges::none_of(graph.args(id),
                                     [&](NodeId arg) { return reads_point_bare(graph, arg); });

@@ -25,11 +25,15 @@ bool is_whole(const Graph &graph, NodeId atom) {
 
 } // namespace
 
-bool is_exact(const Graph &graph, const Polynomial &sum) {
+bool is_of_few_bits(double number) {
     constexpr double few = 0x1p20;
+    return std::floor(number * few) == number * few && std::fabs(number) < few;
+}
+
+bool is_exact(const Graph &graph, const Polynomial &sum) {
     return std::ranges::all_of(sum, [&](const auto &term) {
         const auto &[factors, c] = term;
-        return std::floor(c * few) == c * few && std::fabs(c) < few &&
+        return is_of_few_bits(c) &&
                std::ranges::all_of(factors, [&](NodeId f) { return is_whole(graph, f); });
     });
 }

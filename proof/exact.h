@@ -14,6 +14,7 @@ constexpr ir::OpSet tells_apart{ir::Op::Hash,  ir::Op::Floor, ir::Op::Ceil, ir::
 // Whole numbers (below 2^24) and their products, each times a number of few bits.
 bool is_exact(const ir::Graph &graph, const Polynomial &sum);
 bool is_exact(ir::Graph &graph, ir::NodeId scalar);
+bool is_of_few_bits(double number);
 // May single precision have a number so wrong that its fraction is another? So it is of what a sine, a
 // root or another fraction goes into, which hashes multiply with large numbers: the sine of a number
 // near 300, times 43758.5, may be wrong by 1. Of a hash like that nothing is known but its range.

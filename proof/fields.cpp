@@ -3,6 +3,7 @@
 #include "ir/passes/operations.h"
 #include "ir/passes/walk.h"
 #include "proof/discontinuities.h"
+#include "proof/inexact.h"
 #include "proof/param_bounds.h"
 #include "proof/prover.h"
 
@@ -285,6 +286,12 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                 : "make both sides agree there, ";
         const auto [one_side, other_side] = two_points(b.side_a, b.side_b, dims);
         const auto [one, other] = two_numbers(b.value_a, b.value_b);
+        const auto inexact = inexact_number(graph, scene.shapes[id].args);
+        const std::string few_digits = inexact ? "write `" + std::string(inexact->exact) +
+                                                     "` for " + inexact->written +
+                                                     ", if that is meant: sides that meet by " +
+                                                     inexact->digits + " differ by fewer digits; "
+                                               : "";
         const std::string held =
             std::string(b.held_params ? ", with each param in the middle of its range" : "") +
             (b.held_time ? ", at time " + number_text(ranges.time.lo) : "");
@@ -293,7 +300,8 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                                           what + " jumps near " + point_text(b.where, dims)))
                 d->note("it is " + one + " at " + one_side + " and " + other + " at " + other_side +
                         held + ": " + cause)
-                    .help((by_list ? between : meeting) + "keep the jump out of the region with " +
+                    .help(few_digits + (by_list ? between : meeting) +
+                          "keep the jump out of the region with " +
                           (has_region ? "`within:`, " : "`.within(…)`, ") + assume);
         } else if (Diagnostic *d =
                        report_at(id, blamed, Code::LipschitzUnbounded,
@@ -304,7 +312,8 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                                          number_text(b.value_a) + " and " + number_text(b.value_b) +
                                          held + "), but that they meet everywhere is not seen"
                                    : ", and that its sides meet is not seen"))
-                .help((by_list ? between
+                .help(few_digits +
+                      (by_list ? between
                        : by_cells
                            ? meeting
                            : "write it with `min`, `max`, `clamp` or `abs`, whose continuity "

@@ -333,6 +333,7 @@ Tape flattened(Flattening &context, NodeId root, bool unwound, const Cell *regio
         }
         if (choices) {
             Meeting meeting = meeting_choices(context, whole);
+            if (!is_unseen(meeting.moved, region ? &region->p : nullptr)) meeting = {};
             flattener.cancelling.merge(meeting.choices);
             flattener.tape.near = meeting.near;
         }

@@ -5,6 +5,7 @@
 
 #include "ir/graph.h"
 #include "ir/interval.h"
+#include "proof/carried.h"
 #include "proof/pieces.h"
 #include "proof/work.h"
 
@@ -159,6 +160,7 @@ constexpr double near_enough = 1000; // coordinates up to which some proofs hold
 struct Meeting {
     std::unordered_set<NodeId> choices;
     bool near = false; // where no coordinate is above `near_enough` alone (on_line.h)
+    Apart moved{};     // what the field jumps by at most all the same, up to each distance
 };
 
 class BoundCache;
