@@ -20,6 +20,8 @@ using ir::Graph;
 constexpr ir::OpSet is_choice{Op::Select, Op::Sign, Op::Step};
 constexpr std::size_t max_nodes_of_field = 1500, max_choices = 40;
 constexpr int max_climb = 10, max_cases_of_field = 6000;
+// Of the algebra, for one field: two fifths of what the proof has left, so that other ways are left.
+constexpr std::size_t least_steps = 6'000'000, most_steps = 24'000'000;
 
 struct Field {
     Graph &graph;
@@ -225,6 +227,7 @@ Meeting find_choices(Flattening &context, NodeId root) {
     if (choices.size() > max_choices) return {};
     Meeting out;
     Looked looked{context.work, context.ranges};
+    looked.left = std::clamp(context.work.left / 5 * 2, least_steps, most_steps);
     ByComparison alike(turns_alike), unseen(turns_unseen);
     std::vector<NodeId> by_counts; // turn only where the choices do that they count
     for (NodeId choice : choices) {
