@@ -187,6 +187,7 @@ class Printer {
     }
     void marked_line(const Source &source, std::uint32_t line, std::vector<Mark> marks);
     void remark(std::string_view word, std::string_view style, std::string_view message);
+    void lines_of_all(const std::string &all);
     void edited_lines(const Fix &fix, const Sources &sources);
     std::string &out() { return out_; }
 
@@ -309,9 +310,29 @@ void Printer::remark(std::string_view word, std::string_view style, std::string_
     }
 }
 
+// The lines that stand in place of all of a text.
+void Printer::lines_of_all(const std::string &all) {
+    constexpr std::size_t max_lines = 60;
+    row("", "");
+    std::size_t number = 0;
+    for (std::size_t begin = 0; begin < all.size();) {
+        const std::size_t end = std::min(all.find('\n', begin), all.size());
+        if (++number > max_lines) {
+            row("…", "");
+            return;
+        }
+        row(fmt::to_string(number), for_terminal(all.substr(begin, end - begin)));
+        begin = end + 1;
+    }
+}
+
 // The lines as the edits would make them, where each edit stays within its line.
 void Printer::edited_lines(const Fix &fix, const Sources &sources) {
     constexpr std::size_t max_lines = 4;
+    if (fix.edits.size() == 1 && fix.edits[0].span.source && fix.edits[0].span.begin == 0 &&
+        fix.edits[0].span.end == sources[fix.edits[0].span.source].text.size())
+        if (fix.edits[0].replacement.find('\n') != std::string::npos)
+            return lines_of_all(fix.edits[0].replacement);
     std::vector<Edit> edits = fix.edits;
     std::stable_sort(edits.begin(), edits.end(),
                      [](const Edit &a, const Edit &b) { return a.span < b.span; });
@@ -372,7 +393,11 @@ std::size_t gutter_width(const Diagnostic &diagnostic, const Sources &sources) {
     see(diagnostic.primary.span);
     for (const Label &label : diagnostic.related) see(label.span);
     if (diagnostic.fix)
-        for (const Edit &edit : diagnostic.fix->edits) see(edit.span);
+        for (const Edit &edit : diagnostic.fix->edits) {
+            see(edit.span);
+            const auto lines = std::ranges::count(edit.replacement, '\n');
+            largest = std::max(largest, static_cast<std::uint32_t>(std::min<long>(lines, 60)));
+        }
     return fmt::to_string(largest).size();
 }
 

@@ -289,6 +289,8 @@ class Builder {
     bool is_used_after(Index name) const;
     bool arguments_by_space(Index first);
     void foreign_curried(Index first, Index name, Index past);
+    std::string shape_of_field(Index name) const;
+    bool names_vector(std::string_view name) const;
     void foreign_function(Index first, Index name, bool has_type);
     bool is_assigned_after(Index name) const;
     bool foreign_body(Index at);

@@ -262,27 +262,6 @@ void Builder::foreign_unbound(Index first, Index name, std::string_view type) {
         d.help("write " + in_code((in_function_ ? "var " : "let ") + typed + " = …"));
 }
 
-// `my-name`: a difference here, in all of the file.
-void Builder::foreign_name_parts(Index left, Index right) {
-    const std::string name = std::string(text(left)) + "_" + std::string(text(right));
-    constexpr std::size_t most_edits = 20;
-    std::vector<Edit> edits;
-    for (Index i = left; i + 2 < tokens_.tokens.size() && edits.size() < most_edits; ++i)
-        if (kind(i) == Tok::Name && kind(i + 1) == Tok::Minus && text(i) == text(left) &&
-            text(i + 2) == text(right))
-            edits.push_back({span(i, i + 2), name});
-    lost_.push_back(left), lost_.push_back(right);
-    foreign(span(left, right), "a name has no `-`")
-        .help("write " + in_code(name), std::move(edits));
-}
-
-// Whether the statement's value, behind the name, uses it.
-bool Builder::is_used_after(Index name) const {
-    for (Index i = name + 1; !ends_statement(i); ++i)
-        if (kind(i) == Tok::Name && text(i) == text(name)) return true;
-    return false;
-}
-
 // -- functions -----------------------------------------------------------------------------------
 
 // `f x y = …`, `let f x y = …`: the names from `name` to before `past`.
@@ -327,7 +306,13 @@ void Builder::foreign_function(Index first, Index name, bool has_type) {
         return;
     }
     Diagnostic &d = foreign(span(first, name), "a function is declared with `fn`");
-    note_changed(open, d.help("write " + in_code(head), std::move(edits)));
+    std::string shape = kind(after) == Tok::End ? "" : shape_of_field(name);
+    if (!shape.empty()) {
+        const std::uint32_t end = token(match(failed_ > after ? failed_ : after)).end;
+        edits.push_back({{id_, end, end}, "\n" + shape});
+        shape = ", and the shape of this field, " + in_code(shape);
+    }
+    note_changed(open, d.help("write " + in_code(head) + shape, std::move(edits)));
 }
 
 // -- all -----------------------------------------------------------------------------------------
@@ -348,8 +333,11 @@ bool Builder::foreign_head(Index first) {
                                  is_one_of(kind(body), {Tok::Body, Tok::Trailing, Tok::StrayBrace});
         if (!is_function) return false;
         if (declared.starts_with("main") && (word == "void" || word == "int")) {
+            const Index close = match(body);
             foreign(span(first, name), "a scene has no " + in_code(declared))
-                .note("the shapes that stand at top level are the scene");
+                .note("the shapes that stand at top level are the scene")
+                .help("leave it away", close > body ? std::vector<Edit>{{span(first, close), ""}}
+                                                    : std::vector<Edit>{});
             return true;
         }
         foreign_function(first, name, has_type);

@@ -194,6 +194,10 @@ std::string Builder::transform_text(Index name, bool flat) const {
         }
         case Turned::Degrees:
             list = kind(value) == Tok::ListOpen && match(value) + 1 == to;
+            if (value + 1 == to && kind(value) == Tok::Name && names_vector(text(value))) {
+                ours = "rotate_euler";
+                has_axis = true;
+            }
             if (end < to) { // about z
                 list = false;
                 written = degrees_text(end + 1, to - 1);
@@ -225,6 +229,18 @@ std::string Builder::transform_text(Index name, bool flat) const {
     if (!twist.empty()) out += ".rotate(" + half_of(twist) + ", axis: Z)"; // 0 at the bottom
     if (!height.empty() && !centered) out += ".translate(z: " + half_of(height) + ")";
     return out;
+}
+
+// Whether a name stands for a vector: `turned = [90, 0, 0]`, `for (a = [[90, 0, 0], …])`.
+bool Builder::names_vector(std::string_view name) const {
+    for (Index i = 1; may_look_far() && i + 3 < tokens_.tokens.size(); ++i) {
+        if (text(i) != name || kind(i) != Tok::Name || kind(i + 2) != Tok::ListOpen ||
+            !is_one_of(kind(i + 1), {Tok::Assign, Tok::In}))
+            continue;
+        const bool turns = kind(i - 1) == Tok::For || (i > 1 && kind(i - 2) == Tok::For);
+        return turns == (kind(i + 3) == Tok::ListOpen);
+    }
+    return false;
 }
 
 // What a transform does there and not here, or not in the same way; empty: nothing.

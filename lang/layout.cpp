@@ -295,14 +295,17 @@ bool Layout::transform_waits(const Token &t) {
     const std::size_t close = out_.tokens.size() - 1;
     if (t.kind != Tok::Name || out_.tokens[close].kind != Tok::Close) return false;
     const std::size_t open = out_.match[close];
-    if (open == 0 || open + 1 >= close) return false;
+    if (open == 0) return false;
     const Token &name = out_.tokens[open - 1];
+    const std::string_view named = text_of(source_, name);
+    const bool only_theirs = named == "rotate_extrude" || named == "linear_extrude";
+    if (open + 1 >= close && !only_theirs) return false; // `revolve()`
     const Tok first = out_.tokens[open + 1].kind;
     const bool method = open > 1 && out_.tokens[open - 2].kind == Tok::Dot; // ours
     const bool theirs = is_one_of(first, {Tok::ListOpen, Tok::Number, Tok::String, Tok::Minus}) ||
                         (first == Tok::Name && out_.tokens[open + 2].kind == Tok::Assign);
-    if (name.kind != Tok::Name || !theirs || method ||
-        !is_foreign_transform(text_of(source_, name)))
+    if (name.kind != Tok::Name || !(theirs || only_theirs) || method ||
+        !is_foreign_transform(named))
         return false;
     if (indent_of(t) != indent_of(name)) return indent_of(t) > indent_of(name);
     // on a line of its own above a call: nothing of the library has no shape

@@ -6,6 +6,7 @@
 
 #include "lang/builder.h"
 #include "lang/lexer.h"
+#include "lang/program.h"
 
 #include <fmt/format.h>
 #include <tao/pegtl.hpp>
@@ -481,6 +482,8 @@ Words read_words(const Source &source, SourceId id, Diagnostics &diagnostics) {
 Ast parse_part(const Sources &sources, SourceId id, std::uint32_t begin, std::uint32_t end,
                Diagnostics &diagnostics, std::size_t most_words, Words *words) {
     const Source &source = sources[id];
+    const bool all = begin == 0 && end == source.text.size();
+    if (all && program::answer(source, id, diagnostics)) end = 0; // nothing else is to be said
     Words read = read_words(source, id, begin, end, diagnostics, most_words);
     const Tokens tokens = lay_out(source, id, read, diagnostics);
     if (words) *words = std::move(read);
