@@ -14,7 +14,9 @@ std::string Builder::shape_of_field(Index name) const {
     const Index open = name + 1, close = match(open);
     Index type = open + 1;
     if (kind(type) == Tok::In || text(type) == "in" || text(type) == "const") ++type;
-    if (!is_one_of(text(name), names) || text(type) != "vec3" || type + 2 != close) return {};
+    if (!is_one_of(text(name), names) || text(type) != "vec3" || type + 2 != close ||
+        !may_look_far())
+        return {};
     for (Index i = 0; i < tokens_.tokens.size(); ++i)
         if (text(i) == "implicit") return {};
     const std::string called(text(name));

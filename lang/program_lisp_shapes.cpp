@@ -66,7 +66,7 @@ std::string Writer::doubled(const Node &n) {
         return out + "]";
     }
     const std::string of = lisp_text(n, 10);
-    const auto number = n.is == Is::Number ? parse_number(of) : std::nullopt;
+    const auto number = parse_number(of);
     return number ? format_shortest(*number * 2) : "2 * " + of;
 }
 

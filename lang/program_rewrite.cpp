@@ -166,8 +166,9 @@ std::optional<Rewritten> rewrite(std::string_view text, SourceId id) {
 } // namespace
 
 bool answer(const Source &source, SourceId id, Diagnostics &diagnostics) {
-    const auto rewritten = rewrite(source.text, id);
+    auto rewritten = rewrite(source.text, id);
     if (!rewritten) return false;
+    if (!source.text.ends_with('\n')) rewritten->text.pop_back();
     Diagnostic &d = diagnostics.add(Code::ForeignSyntax, rewritten->at,
                                     "this is a program of " + std::string(words_of(rewritten->of)));
     if (const std::string_view differs = difference_of(rewritten->of); !differs.empty())
