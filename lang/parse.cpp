@@ -6,13 +6,12 @@
 
 #include "lang/builder.h"
 #include "lang/lexer.h"
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 #include <fmt/format.h>
 #include <tao/pegtl.hpp>
 
 namespace fathom::lang {
-
 namespace {
 
 namespace pegtl = tao::pegtl;
@@ -482,15 +481,20 @@ Words read_words(const Source &source, SourceId id, Diagnostics &diagnostics) {
 Ast parse_part(const Sources &sources, SourceId id, std::uint32_t begin, std::uint32_t end,
                Diagnostics &diagnostics, std::size_t most_words, Words *words) {
     const Source &source = sources[id];
-    const bool all = begin == 0 && end == source.text.size();
-    if (all && program::answer(source, id, diagnostics)) end = 0; // nothing else is to be said
+    const Diagnostics before = diagnostics;
     Words read = read_words(source, id, begin, end, diagnostics, most_words);
     const Tokens tokens = lay_out(source, id, read, diagnostics);
     if (words) *words = std::move(read);
     Builder builder(source, id, tokens, diagnostics);
     grammar::Input in(tokens.kinds);
     pegtl::parse<grammar::file, grammar::action, grammar::control>(in, builder);
-    return builder.finish();
+    Ast ast = builder.finish();
+    Diagnostics answered = before;
+    if (diagnostics.errors() == before.errors() || begin > 0 || end < source.text.size())
+        return ast;
+    if (!program::answer(source, id, answered)) return ast;
+    diagnostics = std::move(answered); // nothing else is to be said
+    return parse_part(sources, id, 0, 0, diagnostics, most_words, words);
 }
 
 } // namespace fathom::lang

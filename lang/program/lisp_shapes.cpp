@@ -1,7 +1,7 @@
 // The shapes of Bauble, whose boxes and heights are halves and whose up is y, and of libfive, whose
 // boxes have two corners and whose up is z.
 #include "base/text.h"
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 #include <algorithm>
 #include <array>

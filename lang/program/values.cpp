@@ -1,5 +1,5 @@
 // Values of programs of other languages, written in ours.
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Curv as a tree: one expression below definitions, functions applied by standing before a value.
-#include "lang/program_reader.h"
+#include "lang/program/reader.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Scenes of three.js: what is made by `new`, moved by its parts, and added.
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 #include <array>
 

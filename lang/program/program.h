@@ -134,7 +134,7 @@ class Writer {
         std::vector<Node> added; // to a scene of three.js, shown where the block ends
     };
 
-    // Forms of Bauble and libfive (program_lisp_shapes.cpp).
+    // Forms of Bauble and libfive (lisp_shapes.cpp).
     struct Form {
         std::vector<std::pair<std::string, std::size_t>> axes; // and before which of the rest
         std::vector<const Node *> rest;
@@ -151,7 +151,7 @@ class Writer {
     std::optional<Written> lisp_solid(const std::string &name, const Form &f);
     std::optional<Written> lisp_change(const std::string &name, const Node &n, const Form &f);
 
-    // Statements (program_write.cpp).
+    // Statements (write.cpp).
     void block(const std::vector<Statement> &body, bool top);
     void statement(const Statement &s, bool top, bool last);
     void set(const Statement &s);
@@ -179,7 +179,7 @@ class Writer {
     void show(const Node &n, bool top, bool last);
     void inner(const std::vector<Statement> &body, bool top);
 
-    // Values (program_values.cpp).
+    // Values (values.cpp).
     Written value(const Node &n);
     std::string text(const Node &n, int tighter_than = 0);
     Written binary(const Node &n);
@@ -196,7 +196,7 @@ class Writer {
     Given given(const Node &n, std::size_t first);
     std::string path(const Node &n) const; // `a.b.c`; empty where it is no such
 
-    // What libraries have (program_sdf.cpp, program_jscad.cpp, program_three.cpp).
+    // What libraries have (sdf.cpp, jscad.cpp, three.cpp).
     std::optional<Written> sdf_shape(const std::string &name, Given &g);
     std::optional<Written> sdf_flat(const std::string &name, Given &g);
     std::optional<Written> sdf_change(const std::string &name, const Written &of, Given &g);

@@ -1,7 +1,7 @@
 // What readers of words share: looking at the next ones, and taking them.
 #pragma once
 
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 #include <algorithm>
 

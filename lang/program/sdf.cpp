@@ -1,5 +1,5 @@
 // The shapes and changes of `sdf`, a library of Python: up is z, and flat shapes lie in x and y.
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 namespace fathom::lang::program {
 

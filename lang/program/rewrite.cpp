@@ -1,5 +1,5 @@
 // Which language a program is of, and the answer that rewrites all of it.
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 #include <algorithm>
 #include <array>

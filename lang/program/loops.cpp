@@ -1,5 +1,5 @@
 // Loops of programs of other languages: those that add to a name become blocks of what they add.
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 namespace fathom::lang::program {
 

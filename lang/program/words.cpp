@@ -1,5 +1,5 @@
 // The words of programs of other languages.
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 namespace fathom::lang::program {
 

@@ -1,5 +1,5 @@
 // Bauble and libfive as a tree: forms in parentheses, Bauble's pipe, and names with hyphens.
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 namespace fathom::lang::program {
 

@@ -1,5 +1,5 @@
 // Python and JavaScript as a tree: what programs that make shapes are written with.
-#include "lang/program_reader.h"
+#include "lang/program/reader.h"
 
 #include <algorithm>
 #include <array>

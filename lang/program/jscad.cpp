@@ -1,5 +1,5 @@
 // The shapes and changes of JSCAD, where up is z, and of scripts that write ours as JavaScript.
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 #include <array>
 

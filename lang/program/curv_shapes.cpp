@@ -1,5 +1,5 @@
 // The shapes of Curv: up is z, round sizes are diameters, and an argument is one value.
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // Statements of programs of other languages, written in ours: names that change get new names, and
 // loops that add to a name become blocks of what they add.
-#include "lang/program.h"
+#include "lang/program/program.h"
 #include "lang/vocabulary.h"
 
 #include <algorithm>

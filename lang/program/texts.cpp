@@ -1,6 +1,6 @@
 // Texts of ours, put together from parts.
 #include "base/text.h"
-#include "lang/program.h"
+#include "lang/program/program.h"
 
 namespace fathom::lang::program {
 
