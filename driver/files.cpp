@@ -213,6 +213,7 @@ namespace {
 
 // The whole of a file beside its target, locked until it is renamed. Removed where it was not.
 struct Prepared {
+    explicit Prepared(std::filesystem::path to) : target(std::move(to)) {}
     std::filesystem::path target;
     std::string temporary{};
     Descriptor lock{-1};

@@ -263,7 +263,7 @@ std::vector<Level> chosen_levels(const std::vector<Level> &levels,
             else if (is_new(first) && is_new(unseen))
                 unseen.push_back(level);
         }
-    std::ranges::stable_partition(unseen, has_cut);
+    std::stable_partition(unseen.begin(), unseen.end(), has_cut);
     first.insert(first.end(), unseen.begin(), unseen.end());
     first.insert(first.end(), more.begin(), more.end());
     if (first.size() > most_levels) first.resize(most_levels);

@@ -229,8 +229,8 @@ class ParamBounds {
         const std::size_t proofs = proofs_of(inputs);
         if (inputs.size() < 2 || proofs > most_joint || proofs * one_proof_ > most_joint_work)
             return ir::rounding::infinity;
-        std::ranges::stable_partition(
-            inputs, [&](const Input &input) { return AffineIn(graph_, input)(); });
+        std::stable_partition(inputs.begin(), inputs.end(),
+                              [&](const Input &input) { return AffineIn(graph_, input)(); });
         Ranges at = ranges_;
         most_ = 0;
         const Found found = joint(inputs, at);
