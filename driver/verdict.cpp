@@ -49,11 +49,14 @@ std::string_view axiom_kind(ir::Axiom::Kind kind) {
 } // namespace
 
 std::string verdict_json(const Compilation &compilation) {
-    Json shapes = Json::array(), axioms = Json::array(), diagnostics = Json::array(), bounds;
+    Json shapes = Json::array(), axioms = Json::array(), diagnostics = Json::array();
+    Json bounds, status; // null of a scene that has errors
     Verdict verdict;
+    verdict.exact = false;
     if (compilation.good()) {
         const ir::Scene &scene = compilation.scene;
         verdict = judge(scene);
+        status = status_name(verdict.status);
         if (scene.bounds.finite()) bounds = {scene.bounds.lo, scene.bounds.hi};
         for (const ir::TopLevel &top : scene.top_level) {
             const ir::ShapeFact &fact = scene.facts[top.shape.index];
@@ -67,15 +70,12 @@ std::string verdict_json(const Compilation &compilation) {
                 {{"kind", axiom_kind(axiom.kind)},
                  {"says", axiom.says},
                  {"span", axiom.at.source ? place_json(compilation.sources, axiom.at) : Json()}});
-    } else {
-        verdict.exact = false;
-        verdict.status = ir::ProofStatus::Estimated;
     }
     for (const Diagnostic &diagnostic : compilation.diagnostics.sorted())
         diagnostics.push_back(to_json(diagnostic, compilation.sources));
     return json_text({{"ok", compilation.good()},
                       {"lipschitz", json_number(verdict.lipschitz)},
-                      {"status", status_name(verdict.status)},
+                      {"status", status},
                       {"exact", verdict.exact},
                       {"bounds", bounds},
                       {"shapes", shapes},
