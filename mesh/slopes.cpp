@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace fathom::mesh {
@@ -33,6 +34,15 @@ struct Varying {
     Interval range;
     std::array<Interval, 3> slope{};
     double error = 0;
+    std::uint32_t id = 0; // the same of copies of one number; 0: it has none yet
+    // It is the part above 0, or below, of the number with that id, whose slopes and error are these:
+    // both parts together are that number.
+    struct Half {
+        std::uint32_t of = 0; // 0: it is none
+        bool above = false;
+        std::array<Interval, 3> slope{};
+        double error = 0;
+    } half{};
 };
 
 // f(a, b, …) of which the partial derivatives lie within `by`; its own rounding is part of the sizes
@@ -88,6 +98,14 @@ Varying length_of(const Varying *x, std::size_t count) {
         made.error += x[k].error;
         for (std::size_t i = 0; i < 3; ++i) made.slope[i] = made.slope[i] + share * x[k].slope[i];
     }
+    // Of one number alone that is never below 0 it is that number.
+    const auto is_nothing = [](const Varying &one) { return size(one.range) == 0; };
+    for (std::size_t k = 0; k < count; ++k)
+        if (x[k].half.above && std::count_if(x, x + count, is_nothing) == long(count) - 1 &&
+            !is_nothing(x[k])) {
+            made.half = x[k].half;
+            made.half.error += static_cast<double>(count) * of_roots * longest;
+        }
     return made;
 }
 
@@ -100,22 +118,49 @@ Varying minus(const Varying &a, const Varying &b) {
 }
 
 Varying size_of(const Varying &a) {
-    return chained({{&a, a.range.lo >= 0   ? one
-                         : a.range.hi <= 0 ? minus_one
-                                           : Interval{-1, 1}}},
-                   0);
-}
-
-// One of several, here this one and there another.
-Varying one_of(const Varying &a, const Varying &b) {
-    Varying made;
-    made.known = a.known && b.known;
-    made.error = std::max(a.error, b.error);
-    for (std::size_t i = 0; i < 3; ++i) made.slope[i] = hull(a.slope[i], b.slope[i]);
+    Varying made = chained({{&a, a.range.lo >= 0   ? one
+                                 : a.range.hi <= 0 ? minus_one
+                                                   : Interval{-1, 1}}},
+                           0);
+    made.range = a.range.lo >= 0   ? a.range
+                 : a.range.hi <= 0 ? Interval{-a.range.hi, -a.range.lo}
+                                   : Interval{0, size(a.range)};
     return made;
 }
 
-Varying negative(const Varying &a) { return chained({{&a, minus_one}}, 0); }
+// The greater of both, or the lesser, here this one and there the other, or one of them all over.
+Varying one_of(const Varying &a, const Varying &b, bool greater) {
+    const bool a_alone = greater ? a.range.lo >= b.range.hi : a.range.hi <= b.range.lo;
+    const bool b_alone = greater ? b.range.lo >= a.range.hi : b.range.hi <= a.range.lo;
+    if (a_alone) return a;
+    if (b_alone) return b;
+    Varying made;
+    made.range = greater
+                     ? Interval{std::max(a.range.lo, b.range.lo), std::max(a.range.hi, b.range.hi)}
+                     : Interval{std::min(a.range.lo, b.range.lo), std::min(a.range.hi, b.range.hi)};
+    made.known = a.known && b.known;
+    made.error = std::max(a.error, b.error);
+    for (std::size_t i = 0; i < 3; ++i) made.slope[i] = hull(a.slope[i], b.slope[i]);
+    if (size(b.range) == 0) made.half = {a.id, greater, a.slope, a.error};
+    if (size(a.range) == 0) made.half = {b.id, greater, b.slope, b.error};
+    return made;
+}
+
+// a + b: of both halves of a number that number.
+Varying plus(const Varying &a, const Varying &b) {
+    const double terms = size(a.range) + size(b.range);
+    Varying made = chained({{&a, one}, {&b, one}}, terms);
+    if (a.half.of == 0 || a.half.of != b.half.of || a.half.above == b.half.above) return made;
+    made.slope = a.half.slope;
+    made.error = a.half.error + b.half.error + unit_roundoff * terms;
+    return made;
+}
+
+Varying negative(const Varying &a) {
+    Varying made = chained({{&a, minus_one}}, 0);
+    made.range = {-a.range.hi, -a.range.lo};
+    return made;
+}
 
 // The sine of an angle, or its cosine: both at their derivatives about the middle of its range.
 Varying wave_of(const Varying &angle, bool cosine) {
@@ -129,6 +174,18 @@ Varying wave_of(const Varying &angle, bool cosine) {
     return made;
 }
 
+// What kernels give that choose among numbers; others are not known.
+Varying one_of_several(Kernel kernel, const std::vector<Varying> &in) {
+    if (kernel == Kernel::MinF) return one_of(in[0], in[1], false);
+    if (kernel == Kernel::MaxF) return one_of(in[0], in[1], true);
+    if (kernel == Kernel::MaxNeg) return one_of(in[0], negative(in[1]), true);
+    if (kernel == Kernel::MaxAbs) return one_of(size_of(in[0]), size_of(in[1]), true);
+    if (kernel == Kernel::MinMax) return one_of(in[0], one_of(in[1], in[2], true), false);
+    if (kernel == Kernel::MaxMin) return one_of(in[0], one_of(in[1], in[2], false), true);
+    if (kernel == Kernel::Slab) return one_of(minus(in[0], in[1]), minus(in[1], in[2]), true);
+    return {};
+}
+
 // What kernels of one output give; others are not known.
 Varying through(Kernel kernel, const std::vector<Varying> &in) {
     const auto differences = [&] {
@@ -137,8 +194,7 @@ Varying through(Kernel kernel, const std::vector<Varying> &in) {
     };
     if (kernel == Kernel::CopyF) return in[0];
     if (kernel == Kernel::NegF) return negative(in[0]);
-    if (kernel == Kernel::AddF)
-        return chained({{&in[0], one}, {&in[1], one}}, size(in[0].range) + size(in[1].range));
+    if (kernel == Kernel::AddF) return plus(in[0], in[1]);
     if (kernel == Kernel::SubF) return minus(in[0], in[1]);
     if (kernel == Kernel::MulF) return sum_of_products(in.data(), in.data() + 1, 1);
     if (kernel == Kernel::DivF) {
@@ -169,9 +225,13 @@ Varying through(Kernel kernel, const std::vector<Varying> &in) {
         const Varying length = length_of(differences().data(), 3);
         return chained({{&length, one}, {&in[6], minus_one}}, size(in[6].range));
     }
-    if (kernel == Kernel::MinF || kernel == Kernel::MaxF) return one_of(in[0], in[1]);
-    if (kernel == Kernel::MaxNeg) return one_of(in[0], negative(in[1]));
-    return {};
+    if (kernel == Kernel::LengthPositive3) {
+        Varying nothing, parts[3];
+        nothing.known = true;
+        for (std::size_t i = 0; i < 3; ++i) parts[i] = one_of(in[i], nothing, true);
+        return length_of(parts, 3);
+    }
+    return one_of_several(kernel, in);
 }
 
 // Slopes by slot: the registers of a tape, and what all points share.
@@ -299,11 +359,13 @@ Tie tie_of(const Level &level, const Level &other, const Point &lo, const Point 
     return tie;
 }
 
-std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
-                             const Point &lo, const Point &hi) {
-    constexpr std::size_t longest_tape = 500; // steps
+namespace {
+
+// Runs a tape over a box, and at its middle, step by step: what each number is that it writes.
+Slopes slopes_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
+                   const Point &lo, const Point &hi,
+                   const std::function<void(Register, const Varying &)> &see) {
     const Field &field = evaluator.field;
-    if (tape.steps.size() > longest_tape) return {};
     boxes.count = 16; // of which the first is looked at, and the second: its middle
     const Point middle = middle_point(lo, hi);
     for (std::size_t i = 0; i < 3; ++i)
@@ -313,12 +375,13 @@ std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, c
         }
     cpu::enter_boxes(field.parts, evaluator.ranges, boxes);
     Slopes slopes{field.parts, evaluator.ranges, std::vector<Varying>(field.parts.slot_count)};
+    std::uint32_t ids = 0; // that are given
     for (std::size_t axis = 0; axis < 3; ++axis) {
         Varying &input = slopes.by_slot[slopes.slot(field.program.params[axis].address)];
         input.known = true;
         input.slope[axis] = one;
+        input.id = ++ids;
     }
-    std::vector<Level> levels;
     std::vector<Varying> in;
     const cpu::Selection whole = tape.selection(field.parts);
     std::size_t loops = 0; // before the step at hand: they have rows of their own
@@ -357,12 +420,50 @@ std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, c
         for (std::uint32_t n = 0; plain && n < part.writes; ++n) {
             const std::uint32_t to = operands[n];
             if (!made[n].known || slopes.shared(to)) continue;
+            if (made[n].id == 0) made[n].id = ++ids;
             slopes.by_slot[slopes.slot(to)] = made[n];
-            if (const double slope = least_slope(made[n]); slope > 0)
-                levels.push_back(level_of({k, to}, evaluator.ranges, made[n], slope));
+            see({k, to}, made[n]);
         }
     }
+    return slopes;
+}
+
+constexpr std::size_t longest_tape = 500; // steps
+
+} // namespace
+
+std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
+                             const Point &lo, const Point &hi) {
+    std::vector<Level> levels;
+    if (tape.steps.size() > longest_tape) return levels;
+    slopes_over(evaluator, tape, boxes, lo, hi, [&](Register where, const Varying &number) {
+        if (const double slope = least_slope(number); slope > 0)
+            levels.push_back(level_of(where, evaluator.ranges, number, slope));
+    });
     return levels;
+}
+
+std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &tape,
+                                  cpu::Boxes &boxes, const Point &lo, const Point &hi) {
+    const cpu::Program::Slot &result = evaluator.field.program.results[0];
+    if (evaluator.field.cut || result.shared || tape.steps.size() > longest_tape)
+        return std::nullopt;
+    const Slopes slopes =
+        slopes_over(evaluator, tape, boxes, lo, hi, [](Register, const Varying &) {});
+    const Varying field = slopes.at(result.address);
+    if (!field.known) return std::nullopt;
+    const double least = evaluator.ranges.lo[result.address + 1],
+                 most = evaluator.ranges.hi[result.address + 1]; // at the middle
+    const Point middle = middle_point(lo, hi);
+    Linear linear{0.5 * (least + most), 0.5 * (most - least) + 2 * field.error, {}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Interval slope = field.slope[i];
+        const double reach = std::max(double(hi[i]) - middle[i], double(middle[i]) - lo[i]);
+        linear.slope[i] = 0.5 * (slope.lo + slope.hi);
+        linear.off += 0.5 * (slope.hi - slope.lo) * reach;
+    }
+    linear.off *= 1 + 1e-9;
+    return std::isfinite(linear.value + linear.off) ? std::optional(linear) : std::nullopt;
 }
 
 } // namespace fathom::mesh

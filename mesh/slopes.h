@@ -4,6 +4,8 @@
 
 #include "mesh/field.h"
 
+#include <optional>
+
 namespace fathom::mesh {
 
 struct Level {
@@ -35,6 +37,16 @@ Tie tie_of(const Level &level, const Level &other, const Point &lo, const Point 
 // The numbers of which such an axis is known, in the order of the tape. `boxes` is memory.
 std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                              const Point &lo, const Point &hi);
+
+// The field in a box, all but a linear function: there it is no farther from
+// value + slope · (p - middle_point) than `off`, and so are its floats.
+struct Linear {
+    double value = 0, off = 0;
+    std::array<double, 3> slope{};
+};
+// None where it is not known how the field changes, or it is cut off at bounds. `boxes` is memory.
+std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &tape,
+                                  cpu::Boxes &boxes, const Point &lo, const Point &hi);
 
 // Whether a number is 0 somewhere: there angles, signs and sizes that are made of it have their cuts.
 inline bool has_cut(const Level &level) { return level.lo < 0 && level.hi > 0; }

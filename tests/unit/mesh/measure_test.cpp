@@ -1,11 +1,14 @@
 // Measures: what is known of solids lies in the enclosures, and clearances are those of geometry.
 #include "driver/compile.h"
 #include "mesh/clearance.h"
+#include "mesh/slopes.h"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <fmt/format.h>
 #include <numbers>
+#include <random>
 
 using namespace fathom;
 
@@ -155,4 +158,76 @@ TEST_CASE("solids with common points have no clearance, and touching ones next t
     CHECK(mesh::clearance(scene_of("sphere(1)"), scene_of("sphere(1) & sphere(1).translate(x: 5)"),
                           0, 0.1, progress)
               .failure == mesh::Failure::Empty);
+}
+
+TEST_CASE("the field lies about the plane that is said, wherever it is sampled") {
+    constexpr int boxes_of_each = 400;
+    constexpr std::size_t samples = 64;
+    std::size_t known = 0, close = 0;
+    std::mt19937 dice(5);
+    for (const char *text :
+         {"box([1, 0.7, 0.9])", "box(1) - cylinder(0.3, 2)", "rounded_box([1, 0.8, 0.6], 0.1)",
+          "(box(1) | sphere(0.6).translate(x: 0.4)).rotate(0.4, axis: [1, 2, 3])",
+          "cone(0.6, 1).scale([1, 1, 1]) & slab(0.7)", "torus(0.6, 0.2).shell(0.05)",
+          "rectangle([1, 0.5]).extrude(1, twist: 90deg)", "box_frame(1, thickness: 0.2)"}) {
+        INFO(text);
+        const mesh::Field field(scene_of(text), 0, {});
+        mesh::Evaluator evaluator(field);
+        cpu::Boxes boxes;
+        std::uniform_real_distribution<float> place(-0.8f, 0.8f), share(0, 1), width(-9, -1);
+        for (int b = 0; b < boxes_of_each; ++b) {
+            mesh::Point lo{}, hi{};
+            const float side = std::exp2(width(dice));
+            for (std::size_t i = 0; i < 3; ++i) lo[i] = place(dice), hi[i] = lo[i] + side;
+            if (b % 2) lo[b % 3] = -0.5f - 0.3f * side, hi[b % 3] = lo[b % 3] + side; // on a face
+            const auto linear = mesh::linear_over(evaluator, *field.whole, boxes, lo, hi);
+            if (!linear) continue;
+            ++known;
+            close += linear->off < 1e-3 * side;
+            mesh::Points points;
+            for (std::size_t k = 0; k < samples; ++k) {
+                mesh::Point p{};
+                for (std::size_t i = 0; i < 3; ++i) // the corners first
+                    p[i] = k < 8 ? (k >> i & 1 ? hi[i] : lo[i])
+                                 : std::min(hi[i], lo[i] + share(dice) * (hi[i] - lo[i]));
+                points.add(p);
+            }
+            std::vector<float> values;
+            mesh::values_at(evaluator, *field.whole, points, values);
+            const mesh::Point at = mesh::middle_point(lo, hi);
+            double farthest = 0;
+            for (std::size_t k = 0; k < samples; ++k) {
+                double plane = linear->value;
+                for (std::size_t i = 0; i < 3; ++i)
+                    plane += linear->slope[i] * (double(points.at[i][k]) - at[i]);
+                farthest = std::max(farthest, std::fabs(plane - values[k]));
+            }
+            CHECK(farthest <= linear->off);
+        }
+    }
+    CHECK(known > 1000);
+    CHECK(close > 150); // faces of boxes, for one
+}
+
+TEST_CASE("what planes enclose holds the volume, and is narrow") {
+    std::mt19937 dice(8);
+    std::uniform_real_distribution<double> some(0.4, 1.6), turn(-1, 1);
+    const double pi = std::numbers::pi;
+    for (int n = 0; n < 12; ++n) {
+        const double a = some(dice), b = some(dice), c = some(dice), r = 0.2 * a;
+        const std::string turned = fmt::format(".rotate({:.4f}, axis: [{:.3f}, {:.3f}, 1])",
+                                               turn(dice), turn(dice), turn(dice));
+        const std::string block = fmt::format("box([{:.5f}, {:.5f}, {:.5f}])", a, b, c);
+        const auto number = [](double x) { return std::stod(fmt::format("{:.5f}", x)); };
+        const double volume = number(a) * number(b) * number(c);
+        const mesh::Measures whole = measured(block + turned, as_fine_as(40));
+        CHECK(holds(whole.volume, volume));
+        CHECK(whole.volume.hi - whole.volume.lo < 0.02 * volume);
+        const std::string bored =
+            fmt::format("({} - cylinder({:.5f}, {:.5f})){}", block, r, 2 * b, turned);
+        const double radius = number(r);
+        if (2 * radius > std::min(number(a), number(c))) continue;
+        CHECK(holds(measured(bored, as_fine_as(40)).volume,
+                    volume - pi * radius * radius * number(b)));
+    }
 }
