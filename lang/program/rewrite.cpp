@@ -106,7 +106,7 @@ std::optional<Told> told_by_words(const std::vector<Piece> &pieces) {
     }
     if (!strong) curv.reset();
     if (ours > 0) return std::nullopt;
-    if (script >= 3)
+    if (script >= 3 && first < pieces.size()) // texts alone tell nothing
         return Told{Of::Script, pieces[first].begin,
                     pieces[first].begin + static_cast<std::uint32_t>(pieces[first].text.size())};
     return curv;
