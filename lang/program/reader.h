@@ -12,7 +12,13 @@ class PieceReader {
     explicit PieceReader(const std::vector<Piece> &pieces) : pieces_(pieces) {}
 
   protected:
-    const Piece &now() const { return pieces_[at_]; }
+    // The word at hand. Who looks at words for ever is not sure of them.
+    const Piece &now() const {
+        constexpr std::size_t looks_a_piece = 2000, least = 100'000;
+        if (++looks_ > least + looks_a_piece * pieces_.size() || at_ >= pieces_.size())
+            throw Unsure{};
+        return pieces_[at_];
+    }
     const Piece &next(std::size_t n = 1) const {
         return pieces_[std::min(at_ + n, pieces_.size() - 1)];
     }
@@ -51,6 +57,7 @@ class PieceReader {
 
   private:
     int depth_ = 0;
+    mutable std::size_t looks_ = 0;
 };
 
 } // namespace fathom::lang::program

@@ -92,11 +92,13 @@ class Reader : PieceReader {
     void one(std::vector<Statement> &out) {
         if (takes(";")) return;
         Statement s;
+        const std::size_t before = at_;
         s.comment = now().comment;
         if (python_)
             python_statement(s);
         else
             script_statement(s);
+        if (at_ == before) throw Unsure{}; // nothing was read, and nothing would be
         out.push_back(std::move(s));
     }
 
