@@ -481,7 +481,7 @@ Words read_words(const Source &source, SourceId id, Diagnostics &diagnostics) {
 Ast parse_part(const Sources &sources, SourceId id, std::uint32_t begin, std::uint32_t end,
                Diagnostics &diagnostics, std::size_t most_words, Words *words) {
     const Source &source = sources[id];
-    const Diagnostics before = diagnostics;
+    Diagnostics before = diagnostics;
     Words read = read_words(source, id, begin, end, diagnostics, most_words);
     const Tokens tokens = lay_out(source, id, read, diagnostics);
     if (words) *words = std::move(read);
@@ -489,11 +489,10 @@ Ast parse_part(const Sources &sources, SourceId id, std::uint32_t begin, std::ui
     grammar::Input in(tokens.kinds);
     pegtl::parse<grammar::file, grammar::action, grammar::control>(in, builder);
     Ast ast = builder.finish();
-    Diagnostics answered = before;
     if (diagnostics.errors() == before.errors() || begin > 0 || end < source.text.size())
         return ast;
-    if (!program::answer(source, id, answered)) return ast;
-    diagnostics = std::move(answered); // nothing else is to be said
+    if (!program::answer(source, id, before)) return ast;
+    diagnostics = std::move(before); // nothing else is to be said
     return parse_part(sources, id, 0, 0, diagnostics, most_words, words);
 }
 
