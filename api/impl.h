@@ -28,7 +28,8 @@ struct Origin {
 struct Scene::Impl {
     std::shared_ptr<const Origin> origin;
     std::shared_ptr<const driver::Compilation> compilation; // good
-    ir::Scene scene; // the compilation's, with the present values of its params
+    // The compilation's own, or a copy with other values of its params, or a part of it.
+    std::shared_ptr<const ir::Scene> scene;
     std::vector<Param> params;
     Facts facts;
     std::string part; // of which it is that one alone; empty: all of it
@@ -48,7 +49,7 @@ struct Texts::Impl {
 
 Texts texts_of(Sources sources);
 
-inline const ir::Scene &ir_of(const Scene &scene) { return scene.impl().scene; }
+inline const ir::Scene &ir_of(const Scene &scene) { return *scene.impl().scene; }
 
 Facts facts_of(const ir::Scene &scene, const Sources &sources);
 // What a scene names, from the provider alone.

@@ -7,6 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <set>
 
 namespace fathom::v1 {
 namespace {
@@ -41,9 +44,9 @@ ir::ShapeFact fact_of_union(ir::Scene &scene, const std::vector<ir::TopLevel> &s
 // are, since a union divides each of its parts by its own bound.
 void keep_only(ir::Scene &scene, const std::vector<ir::TopLevel> &shapes) {
     ir::Shape all;
+    std::set<ir::ShapeId> seen;
     for (const ir::TopLevel &top : shapes)
-        if (std::ranges::find(all.children, top.shape) == all.children.end())
-            all.children.push_back(top.shape);
+        if (seen.insert(top.shape).second) all.children.push_back(top.shape);
     if (all.children.size() == 1) {
         scene.root = all.children[0];
     } else {
@@ -62,12 +65,12 @@ void keep_only(ir::Scene &scene, const std::vector<ir::TopLevel> &shapes) {
 std::vector<Statement> statements_of(const Scene &scene) {
     const Sources &sources = scene.impl().compilation->sources;
     std::vector<Statement> statements;
+    std::map<std::array<std::uint32_t, 3>, std::size_t> known;
     for (const ir::TopLevel &top : ir_of(scene).top_level) {
-        const auto same = std::ranges::find(statements, top.span, &Statement::span);
-        if (same != statements.end())
-            same->shapes.push_back(top);
-        else
-            statements.push_back({"", top.span, {top}});
+        const auto [place, fresh] = known.try_emplace(
+            {top.span.source.index, top.span.begin, top.span.end}, statements.size());
+        if (fresh) statements.push_back({"", top.span, {}});
+        statements[place->second].shapes.push_back(top);
     }
     std::map<std::string, int> counts;
     for (Statement &statement : statements) {
@@ -82,8 +85,10 @@ std::vector<Statement> statements_of(const Scene &scene) {
 Scene scene_of(const Scene &whole, const Statement &statement) {
     auto impl = std::make_shared<Scene::Impl>(whole.impl());
     impl->part = statement.name;
-    keep_only(impl->scene, statement.shapes);
-    impl->facts = facts_of(impl->scene, impl->compilation->sources);
+    const auto part = std::make_shared<ir::Scene>(*whole.impl().scene);
+    keep_only(*part, statement.shapes);
+    impl->facts = facts_of(*part, impl->compilation->sources);
+    impl->scene = part;
     return Scene(std::move(impl));
 }
 

@@ -99,7 +99,7 @@ CompileResult result_of(driver::Compilation compilation, std::shared_ptr<const O
     if (!whole->good()) return result;
     auto impl = std::make_shared<Scene::Impl>();
     impl->origin = repeatable(std::move(origin), whole->sources);
-    impl->scene = whole->scene;
+    impl->scene = {whole, &whole->scene};
     impl->params = params_of(whole->scene);
     impl->facts = facts_of(whole->scene, whole->sources);
     impl->compilation = whole;
@@ -264,6 +264,8 @@ const Facts &Scene::facts() const { return impl_->facts; }
 CompileResult Scene::with(const std::map<std::string, std::vector<double>> &values) const {
     const auto work = [&]() -> CompileResult {
         auto changed = std::make_shared<Impl>(*impl_);
+        const auto scene = std::make_shared<ir::Scene>(*impl_->scene);
+        changed->scene = scene;
         bool rebuild = false;
         for (const auto &[name, value] : values) {
             const auto param = std::ranges::find(changed->params, name, &Param::name);
@@ -273,7 +275,7 @@ CompileResult Scene::with(const std::map<std::string, std::vector<double>> &valu
                 return failed(sentence("usage", why));
             rebuild = rebuild || param->structural;
             std::ranges::copy(value, param->value.begin());
-            changed->scene.params[static_cast<std::size_t>(param - changed->params.begin())].value =
+            scene->params[static_cast<std::size_t>(param - changed->params.begin())].value =
                 param->value;
         }
         if (!rebuild) {

@@ -284,12 +284,15 @@ NodeId Graph::constant(const Constant &wanted) {
         if (value.value[i] == 0) value.value[i] = 0; // -0 is the same number
     std::fill(value.value.begin() + static_cast<std::ptrdiff_t>(count), value.value.end(), 0.0);
     NodeId &slot = slot_of(hash_of(value), [&](NodeId id) {
-        return is_constant(id) && constant_of(id).type == value.type &&
-               std::memcmp(constant_of(id).value.data(), value.value.data(),
+        return is_constant(id) && type(id) == value.type &&
+               std::memcmp(&numbers_[nodes_[id].payload], value.value.data(),
                            count * sizeof(double)) == 0;
     });
-    if (!slot) slot = add_node(Op::Const, value.type, {}, constants_.add(value).index);
-    return slot;
+    if (slot) return slot;
+    const auto first = static_cast<std::uint32_t>(numbers_.size());
+    numbers_.insert(numbers_.end(), value.value.begin(),
+                    value.value.begin() + static_cast<std::ptrdiff_t>(count));
+    return slot = add_node(Op::Const, value.type, {}, first);
 }
 
 NodeId Graph::number(double value) { return constant({Type::Float, {value}}); }
@@ -306,14 +309,16 @@ NodeId Graph::fresh_var(Type type) { return intern(Op::Var, type, {}, vars_++); 
 NodeId Graph::param(std::uint32_t index, Type type) { return intern(Op::Param, type, {}, index); }
 NodeId Graph::time() { return intern(Op::Time, Type::Float, {}, 0); }
 
-const Constant &Graph::constant_of(NodeId id) const {
+Constant Graph::constant_of(NodeId id) const {
     assert(is_constant(id));
-    return constants_[Id<Constant>{std::size_t{nodes_[id].payload}}];
+    Constant constant{type(id), {}};
+    std::copy_n(&numbers_[nodes_[id].payload], components(constant.type), constant.value.begin());
+    return constant;
 }
 
 std::optional<double> Graph::as_number(NodeId id) const {
     if (!is_constant(id) || components(type(id)) != 1) return std::nullopt;
-    return constant_of(id).value[0];
+    return numbers_[nodes_[id].payload];
 }
 
 // -- short forms
@@ -353,7 +358,7 @@ NodeId Graph::call(FunctionId id, std::span<const NodeId> args) {
 std::size_t Graph::bytes() const {
     constexpr std::size_t hashed = 48; // what a hash table adds
     return nodes_.size() * (sizeof(Node) + sizeof(Reads) + 2 * sizeof(NodeId)) +
-           args_.size() * sizeof(NodeId) + constants_.size() * sizeof(Constant) +
+           args_.size() * sizeof(NodeId) + numbers_.size() * sizeof(double) +
            functions_.size() * (sizeof(Function) + hashed) +
            loops_.size() * (sizeof(Loop) + hashed) + table_bytes_;
 }

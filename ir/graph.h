@@ -173,7 +173,7 @@ class Graph {
     NodeId call(FunctionId function, std::span<const NodeId> args);
 
     bool is_constant(NodeId id) const { return nodes_[id].op == Op::Const; }
-    const Constant &constant_of(NodeId id) const;     // of a Const node
+    Constant constant_of(NodeId id) const;            // of a Const node
     std::optional<double> as_number(NodeId id) const; // a constant scalar's value
 
     FunctionId add_function(Function function);
@@ -214,7 +214,7 @@ class Graph {
     std::vector<Reads> reads_;
     std::vector<bool> of_scalars_; // by node: a vector that scalar_part takes apart
     std::unordered_map<std::uint64_t, NodeId> scalar_parts_;
-    Arena<Constant> constants_;
+    std::vector<double> numbers_; // of constants: components(type) from their payload on
     Arena<Function> functions_;
     Arena<Loop> loops_;
     Arena<Table> tables_;

@@ -223,7 +223,8 @@ SomeWays ways_in(const Place &here, int dims) {
 void Prover::test_estimate(ShapeId id, NodeId field, double estimate) {
     const Place &here = place(id);
     if (!here.reported || !options.test_assumptions) return;
-    const Tape &tape = tape_of(field);
+    const auto kept = tape_of(field);
+    const Tape &tape = *kept;
     if (tape.too_large) return;
     if (work.spent()) {
         report(id, Code::ProofLimit, "");
@@ -293,7 +294,8 @@ std::optional<FieldBound> Prover::holds_stated(ShapeId id, NodeId field, double 
 
 void Prover::test_stated(ShapeId id, NodeId field, double stated, const FieldBound &found) {
     const Place &here = place(id);
-    const Tape &tape = tape_of(field);
+    const auto kept = tape_of(field);
+    const Tape &tape = *kept;
     if (tape.too_large) return;
     const int dims = scene.shapes[id].dims;
     SomeWays ways = ways_in(here, dims);

@@ -19,7 +19,8 @@ using ir::rounding::up;
 
 // The largest |d²t/ds²| along lines, over a box.
 double Prover::bend(NodeId field, const Box &box) {
-    const Tape &tape = tape_of(field);
+    const auto kept = tape_of(field);
+    const Tape &tape = *kept;
     if (tape.too_large) return infinity;
     Machine machine(tape, ranges, true);
     machine.run(to_cell(box));
@@ -92,7 +93,8 @@ struct Distance {
 } // namespace
 
 double Prover::core_of_leaf(NodeId field) {
-    const Tape &tape = tape_of(field);
+    const auto kept = tape_of(field);
+    const Tape &tape = *kept;
     if (tape.too_large) return -infinity;
     Machine machine(tape, ranges, true);
     machine.run(Cell{});

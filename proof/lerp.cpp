@@ -34,7 +34,8 @@ double number_at(std::int64_t place) {
 // The part of a box in which a weight varies: beyond each side its gradient is 0. Each side is
 // found by halving, with what the others have cut off already.
 Box Prover::varying_box(NodeId weight, const Box &within) {
-    const Tape &tape = tape_of(weight);
+    const auto kept = tape_of(weight);
+    const Tape &tape = *kept;
     if (tape.too_large) return within;
     Machine machine(tape, ranges);
     Box box = within;

@@ -23,6 +23,7 @@ struct Place {
     const Zone *zone =
         nullptr; // the region, where there is one use and it is the shape's own space
     bool shared = false;
+    bool mirrored = false; // each who asks states that it is symmetric across all three planes
 };
 
 // What helps where a bound of a field of one's own is not proved.
@@ -79,7 +80,8 @@ struct Prover {
 
     // -- places, from the root down
     void find_places();
-    void visit(ir::ShapeId child, const Box &box, const Zone *zone, bool reported);
+    void visit(ir::ShapeId child, const Box &box, const Zone *zone, bool reported,
+               bool mirrored = false);
 
     // -- rules, from the leaves up; each returns all that it found
     Derived of_child(const ir::Shape &shape) const; // what a rule about the first child begins with
@@ -150,8 +152,9 @@ struct Prover {
     std::optional<Vec> whole_shift(ir::NodeId q); // the interval of p - q, where limited
     Interval number_anywhere(ir::NodeId id);
 
-    const Tape &tape_of(ir::NodeId field); // flattened once
-    std::map<ir::NodeId, Tape> tapes;
+    std::shared_ptr<const Tape> tape_of(ir::NodeId field); // flattened once, while there is room
+    std::map<ir::NodeId, std::shared_ptr<const Tape>> tapes;
+    std::size_t tapes_length = 0; // of all, in instructions
 
     // What values the raw field may have in a box of its own space; and how far from 0 they are.
     Interval values(ir::ShapeId id, const Cell &cell, int depth = 0);

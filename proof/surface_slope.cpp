@@ -58,7 +58,8 @@ double Prover::surface_slope(ShapeId id, const Derived &k) {
     const ir::Shape shape = scene.shapes[id];
     if (shape.kind != ShapeKind::Leaf) return k.fact.surface_slope; // what is known of its parts
     if (!(k.fact.lipschitz_sup > not_steep) || k.failed || !place(id).reported) return 1;
-    const Tape &tape = tape_of(shape.args[0]);
+    const auto kept = tape_of(shape.args[0]);
+    const Tape &tape = *kept;
     if (tape.too_large) return 1;
     Cell region = to_cell(ir::intersect(place(id).box, k.fact.bounds));
     double size = 0;

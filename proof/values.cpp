@@ -38,13 +38,18 @@ Cell clamped(const Cell &cell, const Box &box) {
 } // namespace
 
 // For values, symmetries and bends, which no choice's border decides.
-const Tape &Prover::tape_of(ir::NodeId field) {
+std::shared_ptr<const Tape> Prover::tape_of(ir::NodeId field) {
     const auto found = tapes.find(field);
     if (found != tapes.end()) return found->second;
     flattening.borders = false;
     Tape tape = flatten(flattening, field);
     flattening.borders = true;
-    return tapes.emplace(field, std::move(tape)).first->second;
+    constexpr std::size_t most_kept = 100'000; // instructions, of about 500 bytes each
+    if (tapes_length > most_kept) tapes.clear(), tapes_length = 0;
+    tape.each.shrink_to_fit();
+    tapes_length += tape.each.size();
+    for (const Loop &loop : tape.loops) tapes_length += loop.body.size();
+    return tapes[field] = std::make_shared<const Tape>(std::move(tape));
 }
 
 // What is proved in its own box alone is joined with the way to it, as it is lowered.
@@ -64,9 +69,9 @@ Interval Prover::own_values(ShapeId id, const Cell &cell, int depth) {
         return values(shape.children[i], there, depth + 1);
     };
     auto read = [&](ir::NodeId node) {
-        const Tape &tape = tape_of(node);
-        if (tape.too_large) return Interval::everything();
-        Machine machine(tape, ranges);
+        const auto tape = tape_of(node);
+        if (tape->too_large) return Interval::everything();
+        Machine machine(*tape, ranges);
         machine.run(cell);
         return machine.value(0);
     };

@@ -286,7 +286,7 @@ bool evaluate_rows(Interpreter &ev, const std::vector<NodeId> &roots, NodeId row
                                        static_cast<std::uint32_t>(i) * 40503u);
             }
         }
-        rows.emplace_back();
+        rows.emplace_back().reserve(roots.size());
         for (NodeId root : roots) rows.back().push_back(values[slot[root]]);
     }
     return true;

@@ -310,6 +310,7 @@ std::vector<ShapeId> gather_instances(Interpreter &ev, std::vector<ShapeId> shap
         if (builder.too_large || builder.tree.row.empty()) continue;
         Group &g = groups[builder.tree.words];
         g.members.push_back(i);
+        builder.tree.row.shrink_to_fit();
         g.rows.push_back(std::move(builder.tree.row));
         g.stated = std::move(builder.stated);
     }
@@ -351,6 +352,7 @@ std::optional<ShapeId> smooth_instances(Interpreter &ev, const std::vector<Shape
         if (builder.too_large || (!rows.empty() && builder.tree.words != skeleton))
             return std::nullopt;
         skeleton = std::move(builder.tree.words);
+        builder.tree.row.shrink_to_fit();
         rows.push_back(std::move(builder.tree.row));
         stated = std::move(builder.stated);
     }

@@ -318,6 +318,13 @@ TEST_CASE("honest scenes pass, however large") {
     }));
     passes("for i in 0..100000 {\n  sphere(0.1 + random(i) * 0.2)"
            ".translate([i % 100, random(i, 2) * 100, floor(i / 1000)])\n}\n");
+    // Each of another size, at a place of three random numbers.
+    const std::string placed =
+        "for i in 0..100000 {\n  box(0.3 + 0.2 * hash([i, 4])).translate(vec3("
+        "hash([i, 1]) - 0.5, hash([i, 2]) - 0.5, hash([i, 3]) - 0.5) * 111)"
+        "\n}\n";
+    passes(placed);
+    passes("smooth_union(0.2) {\n" + placed + "}\n");
     // Fields of one's own whose bounds are far above what is true: more work would lower them.
     passes("fn rope(p: vec3, k: float) -> float {\n  let c = cos(k * p.y)\n  let s = sin(k * p.y)\n"
            "  length(abs(mat2([c, s], [-s, c]) * p.xz) - 0.15) - 0.14\n}\n" +
