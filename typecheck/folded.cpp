@@ -24,7 +24,7 @@ static std::optional<ir::Constant> known_number(const Value &v) {
     }
     for (std::size_t i = 0; i < size; ++i) {
         if (!std::isfinite(v.num[i])) return std::nullopt;
-        constant.value[i] = v.num[i];
+        constant.value[i] = v.num[i] == 0 ? 0 : v.num[i]; // no -0, as in the graph
     }
     return constant;
 }

@@ -313,6 +313,7 @@ static Value hash_call(Interpreter &ev, const CallSite &site, std::vector<Value>
     auto v = vector_argument(ev, site, args[0], 0);
     if (!v) return poison();
     if (is_scalar(ev, args[0]) && numeric_type(ev, args[0]) == Type::Int) v = args[0];
+    if (const auto known = folded(Op::Hash, Type::Float, {&*v, 1}, false)) return *known;
     return from_node(ev, ev.scene.graph.make(Op::Hash, {to_node(ev, *v)}));
 }
 
