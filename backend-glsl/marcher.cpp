@@ -22,13 +22,28 @@ std::string flag(bool on) { return on ? "1" : ""; }
 
 std::string vec3_of(const std::array<float, 3> &v) { return vec3_literal({v[0], v[1], v[2]}); }
 
+// How the surface is gone down to (shading.h, NEAREST).
+Values descent_values() {
+    namespace shading = ir::shading;
+    return {
+        {"DESCENT_STEPS", fmt::to_string(shading::descent_steps)},
+        {"DESCENT_REACH", float_literal(shading::descent_reach)},
+        {"DESCENT_PLAIN", fmt::to_string(shading::descent_plain)},
+        {"DESCENT_SLOW", float_literal(shading::descent_slow)},
+        {"DESCENT_FASTEST", float_literal(shading::descent_fastest)},
+        {"DESCENT_ACROSS", float_literal(shading::descent_across)},
+        {"DESCENT_LEAST", float_literal(shading::descent_least)},
+        {"DESCENT_APART", float_literal(shading::descent_apart)},
+    };
+}
+
 Values values_of(const MarcherOptions &options) {
     namespace shading = ir::shading;
     const std::string far = "100.0 * max(" + float_literal(options.radius) +
                             ", length(fathom_origin - " + options.center + "))";
     const bool many_slopes = !options.unit_slope;
     const int surface_taps = many_slopes ? 5 : 4;
-    return {
+    Values values{
         {"BOXED", flag(options.boxed)},
         {"UNIT_SLOPE", flag(options.unit_slope)},
         {"EXACT", flag(options.exact)},
@@ -114,8 +129,6 @@ Values values_of(const MarcherOptions &options) {
         {"MANY_STEPS", fmt::to_string(shading::many_steps)},
         {"NEARLY", float_literal(shading::nearly)},
         {"OCCLUSION_FINE", float_literal(shading::occlusion_fine)},
-        {"DESCENT_STEPS", fmt::to_string(shading::descent_steps)},
-        {"DESCENT_APART", float_literal(shading::descent_apart)},
         {"MOST_SLIDES", fmt::to_string(shading::most_slides)},
         {"OCCLUSION_SLIDES", fmt::to_string(shading::occlusion_slides)},
         {"NEAR_ENOUGH", float_literal(shading::near_enough)},
@@ -138,6 +151,8 @@ Values values_of(const MarcherOptions &options) {
         {"MIN_ANGLE", float_literal(shading::min_angle)},
         {"CHECK_STEPS", fmt::to_string(check_steps)},
     };
+    values.merge(descent_values());
+    return values;
 }
 
 } // namespace

@@ -150,8 +150,15 @@
 //   slope makes no step, but the next arm. Where d leads to where the field is above 0 by the
 //   gradient u of the step before, the field is the greater of two: the shortest d by which both
 //   are 0, if the sine between them is at least sqrt(descent_apart). So the sharp edge of a cut is
-//   reached in a few steps. The slope is that of the last step where all are 1
-//   (`Frame::unit_slope`), else that at p itself. What is not reached is nowhere.
+//   reached in a few steps. Where not all slopes are 1 (`Frame::unit_slope`): a step is at most
+//   descent_reach times what counts: where a field is flat far off (a Gaussian's, `atan`), g/slope
+//   leads past the solid. From the descent_plain-th step on, where d is r = descent_slow times the
+//   one before or more, on the same side, it is divided by 1 - r, at least descent_fastest, as
+//   roots of a higher order want (Aitken). Where the field had the other sign at one of the places
+//   before, the last such, and d is longer than descent_across of the way there, d is where the
+//   chord is 0, at least descent_least of that way from both ends. The slope is that of the last
+//   step where all are 1 (`Frame::unit_slope`), else that at p itself. What is not reached is
+//   nowhere.
 //   ALONG the surface, n = v/|v|, from the best place so far, to p + share*((off.n)*n - off), and
 //   down again, with a quarter of the share where that was not better (1 at first, least_share at
 //   least), at most most_slides times (for a point occlusion_slides): until it was better by `fine`
@@ -165,10 +172,10 @@
 //     counts is tried, and is nowhere if it is one: the way goes on down, at most film_steps times,
 //     while g >= near = film_near*thick, thick = slack/4 there; where g does not become less than
 //     film_lower of what it was, film_stalls times in a row, it is least there: a film. Where |g| <
-//     near, g is looked at film_looks times on a circle of radius film_look*thick about that place,
-//     in the plane of off and v, which an edge is across (where both are one way, in some plane
-//     that holds it). If it is below -thick at none of them, that is a film (or an edge sharper
-//     than an angle between two looks).
+//     near, g is looked at film_looks times on a circle about that place, of radius film_look*thick
+//     divided by the slope at the surface, where that is below 1, in the plane of off and v, which
+//     an edge is across (where both are one way, in some plane that holds it). If it is below
+//     -thick at none of them, that is a film (or an edge sharper than an angle between two looks).
 //   BESIDE: a flush tool's hole has a film across it, which hides its rim. Where a film is, or the way
 //     down ended without landing, with n = v/|v| there and |g|/slope below what counts, the solid is
 //     looked for beside it: on circles in the plane across n about where the way passes it (where
@@ -198,6 +205,8 @@
 //   angle = max(soft_shadows, min_angle): half the light's angular size
 //   closed(s) = near(q + s*l, max(h, shadow_arm*g))/(angle*s): where that is below 1, something covers
 //   the light. The slope is that of as long a way as the value is of, not that of a grain of noise.
+//   Where near is no less than e = shadow*angle*s, the edge below, the field is looked at e against
+//   its gradient as well: g' < 0 there says that near is at most e*g/(g - g').
 //   Where it is looked at are marks, which no bound moves: the multiples of gap(s) = the greatest
 //   power of 2 that is not above marks*angle*s, and reach.
 //   s = reach (what is left of the way), shadow = closed_from; while s > margin,
@@ -261,6 +270,11 @@ inline constexpr float occlusion_reach = 0.075f; // of half the height that is s
 inline constexpr float nearly = 0.98f;
 inline constexpr float occlusion_fine = 1.0f / 256; // of the way to a sample, by its weight
 inline constexpr int descent_steps = 8;             // to the surface
+inline constexpr float descent_reach = 2;           // times what counts: the longest step
+inline constexpr int descent_plain = 3;             // steps
+inline constexpr float descent_slow = 0.3f;         // of the step before
+inline constexpr float descent_fastest = 1.0f / 8;
+inline constexpr float descent_across = 0.75f, descent_least = 0.1f; // of the way to the other side
 inline constexpr float descent_apart =
     1.0f / 64; // the square of a sine: two faces that are not one
 inline constexpr int most_slides = 6, occlusion_slides = 1; // along it

@@ -108,8 +108,8 @@ void slopes(Worker &worker, const Vec *points, const float *g, const float *h, V
     }
 }
 
-void near(Worker &worker, const Vec *points, const float *g, const float *least_arm, float *out,
-          std::size_t n) {
+void near(Worker &worker, const Vec *points, const float *g, const float *least_arm,
+          const float *edge, float *out, std::size_t n) {
     if (worker.stage.frame.unit_slope) {
         std::copy(g, g + n, out);
         return;
@@ -119,6 +119,7 @@ void near(Worker &worker, const Vec *points, const float *g, const float *least_
     for (std::size_t k = 0; k < n; ++k) arm[k] = std::max(least_arm[k], shading::shadow_arm * g[k]);
     slopes(worker, at.data(), value.data(), arm.data(), gradient.data(), slope.data(), n);
     std::vector<std::size_t> again;
+    std::vector<Vec> down = gradient;
     for (std::size_t k = 0; k < n; ++k) {
         out[k] = g[k] / slope[k];
         if (!(arm[k] > std::max(least_arm[k], out[k]))) continue;
@@ -129,7 +130,23 @@ void near(Worker &worker, const Vec *points, const float *g, const float *least_
     }
     slopes(worker, at.data(), value.data(), arm.data(), gradient.data(), slope.data(),
            again.size());
-    for (std::size_t j = 0; j < again.size(); ++j) out[again[j]] = value[j] / slope[j];
+    for (std::size_t j = 0; j < again.size(); ++j) {
+        out[again[j]] = value[j] / slope[j];
+        down[again[j]] = gradient[j];
+    }
+    again.clear();
+    for (std::size_t k = 0; k < n; ++k)
+        if (out[k] >= edge[k] && edge[k] > least_arm[k]) again.push_back(k);
+    for (std::size_t j = 0; j < again.size(); ++j) {
+        const std::size_t k = again[j];
+        worker.points.set(0, j, points[k] - edge[k] / std::max(length(down[k]), 1e-30f) * down[k]);
+    }
+    value.resize(again.size());
+    shaded_values(worker, worker.points, value.data(), again.size());
+    for (std::size_t j = 0; j < again.size(); ++j) {
+        const std::size_t k = again[j];
+        if (value[j] < 0) out[k] = edge[k] * g[k] / (g[k] - value[j]);
+    }
 }
 
 void refine(Worker &worker, std::span<const RayState> rays, std::span<Crossing> crossings,

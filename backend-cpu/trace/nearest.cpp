@@ -20,8 +20,13 @@ struct Descent {
     Vec p;
     float g, fine;
     float slope = 0;
-    Vec v{0};        // the gradient of the last step, which says that the field
-    float ahead = 0; // is this at p
+    Vec v{0};         // the gradient of the last step, which says that the field
+    float ahead = 0;  // is this at p
+    float stride = 0; // the last step's length,
+    Vec last{0};      // where it began,
+    float before = 0; // and the field there
+    Vec other{0};     // the last place where the field had the other sign,
+    float beyond = 0; // and its value there; 0: none
     int steps = 0;
     bool waits = false; // for its value: it has just begun anew
     bool landed = false;
@@ -107,7 +112,7 @@ class Searches {
             const Vec n = way.v / std::max(length(way.v), shading::min_slope);
             const float before = best.off;
             best.off = length(off) / size, best.at = way.p, best.v = way.v, best.g = way.g,
-            best.way = off;
+            best.way = off, best.slope = std::max(way.slope, shading::min_slope);
             best.along = dot(off, n) * n - off;
             const float gain = (before - best.off) * size;
             if (length(way.v) < shading::steady * way.slope) return false;
@@ -167,8 +172,33 @@ class Searches {
         const float vv = dot(v, v), uu = dot(u, u), uv = dot(u, v), det = vv * uu - uv * uv;
         if (!first && way.ahead + dot(u, by) > 0 && det > shading::descent_apart * vv * uu)
             by = ((way.ahead * uv - way.g * uu) * v + (way.g * uv - way.ahead * vv) * u) / det;
+        if (!worker_.stage.frame.unit_slope) by = kept_near(way, by, first);
         way.ahead = way.g + dot(v, by);
         way.p = way.p + by;
+    }
+
+    // What DOWN makes of a step: not too far, faster where steps hardly shorten, and between two places
+    // of which one is in the solid.
+    Vec kept_near(Descent &way, Vec by, bool first) const {
+        const Near &place = places_[way.of];
+        const bool point = !(place.angle > 0);
+        const float light = point ? 1.0f : place.angle * dot(way.p - place.from, place.towards);
+        const float most = shading::descent_reach * place.limit * light, size = length(by);
+        if (first) way.stride = way.before = way.beyond = 0;
+        if (way.before * way.g < 0) way.other = way.last, way.beyond = way.before;
+        const float ratio = way.before * way.g > 0 ? size / way.stride : 0;
+        way.last = way.p, way.before = way.g, way.stride = size;
+        const bool far = most > 0 && size > most;
+        if (far) by *= most / size;
+        if (!far && way.steps > shading::descent_plain && ratio > shading::descent_slow &&
+            ratio < 1)
+            by /= std::max(1 - ratio, shading::descent_fastest);
+        const Vec across = way.other - way.p;
+        if (way.beyond * way.g < 0 && length(by) > shading::descent_across * length(across))
+            by = std::clamp(way.g / (way.g - way.beyond), shading::descent_least,
+                            1 - shading::descent_least) *
+                 across;
+        return by;
     }
 
     void leave_out_films() {
@@ -220,9 +250,10 @@ class Searches {
             for (Descent &way : ways_) {
                 const Best &best = best_[way.of];
                 const Vec side = glm::normalize(perpendicular(best.edge));
-                way.p = best.at + shading::film_look * places_[way.of].thick *
-                                      (std::cos(angle) * side +
-                                       std::sin(angle) * glm::cross(best.edge, side));
+                way.p =
+                    best.at +
+                    shading::film_look * places_[way.of].thick / std::min(best.slope, 1.0f) *
+                        (std::cos(angle) * side + std::sin(angle) * glm::cross(best.edge, side));
             }
             evaluate();
             std::erase_if(ways_,

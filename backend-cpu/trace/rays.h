@@ -112,8 +112,8 @@ void slopes(Worker &worker, const Vec *points, const float *g, const float *h, V
             float *out, std::size_t n);
 // The true distances near n points where it says g (shading.h, TRUE DISTANCE), by gradients of these
 // arms at least.
-void near(Worker &worker, const Vec *points, const float *g, const float *least_arm, float *out,
-          std::size_t n);
+void near(Worker &worker, const Vec *points, const float *g, const float *least_arm,
+          const float *edge, float *out, std::size_t n);
 
 // A point, or a way to a light, that the solid may be near to (shading.h, NEAREST).
 struct Near {

@@ -177,14 +177,15 @@ class Shadows {
     // Of what is close: g in values_, the true distance in near_.
     void measure() {
         const std::size_t n = close_.size();
-        points_.resize(n), arms_.resize(n), values_.resize(n), near_.resize(n);
+        points_.resize(n), arms_.resize(n), edges_.resize(n), values_.resize(n), near_.resize(n);
         for (std::size_t j = 0; j < n; ++j) {
             points_[j] = place(close_[j].ray, close_[j].s);
             arms_[j] = rays_[close_[j].ray].arm;
             values_[j] = close_[j].d;
+            edges_[j] = states_[close_[j].ray].shadow * angle_ * close_[j].s;
         }
         if (worker_.stage.shaded_apart) evaluate_at(points_, values_);
-        near(worker_, points_.data(), values_.data(), arms_.data(), near_.data(), n);
+        near(worker_, points_.data(), values_.data(), arms_.data(), edges_.data(), near_.data(), n);
     }
     void evaluate_at(const std::vector<Vec> &points, std::vector<float> &out) {
         out.resize(points.size());
@@ -204,7 +205,7 @@ class Shadows {
     std::vector<State> states_;
     std::vector<Close> close_;
     std::vector<Vec> points_;
-    std::vector<float> next_, arms_, values_, near_;
+    std::vector<float> next_, arms_, edges_, values_, near_;
     std::vector<Near> places_;
     std::vector<std::size_t> of_; // whose way each is
 };

@@ -18,12 +18,16 @@ float fathom_nearest(vec3 from, vec3 l, vec3 p, float g, float first, float last
     float least = $UNSEEN, share = 1.0, slope = 0.0, said = 0.0, bent = -4.0 * g, ahead = 0.0;
     float arm = max(fine, $SHADOW_ARM * abs(g));
     vec3 around = arm * fathom_corner(0);
+$if !UNIT_SLOPE
+    vec3 last_p = p, other = p; // where the last step began; and where the field had the other sign,
+    float g_last = 0.0, stride = 0.0, beyond = 0.0; // the field there, the step's length, and the field here; 0: none
+$end
     int steps = 0, slides = 0, tap = 0; // of a gradient, -1: the field itself
     bool returned = false;
     bool found = false; // the place is: is it a film?
 $if FILMS
     vec3 best_v = v, best_way = v;
-    float best_g = g, before = g;
+    float best_g = g, best_slope = 1.0, before = g;
     int stalls = 0, look = -1; // of the circle round it
     bool none = false; // no solid is at `best`, where the field is 0 so far on; so what is beside it is looked for:
     float away_there = 0.0, fine_found = fine;
@@ -63,6 +67,27 @@ $end
                 float vv = dot(sum, sum), uu = dot(v, v), uv = dot(v, sum), det = vv * uu - uv * uv;
                 if (steps > 0 && ahead + dot(v, by) > 0.0 && det > $DESCENT_APART * vv * uu)
                     by = ((ahead * uv - g * uu) * sum + (g * uv - ahead * vv) * v) / det;
+$if !UNIT_SLOPE
+                float size = length(by), most = $DESCENT_REACH * limit * (point ? 1.0 : angle * dot(p - from, l));
+                if (steps == 0) {
+                    g_last = 0.0;
+                    beyond = 0.0;
+                }
+                if (g_last * g < 0.0) {
+                    other = last_p;
+                    beyond = g_last;
+                }
+                float ratio = g_last * g > 0.0 ? size / stride : 0.0;
+                last_p = p;
+                g_last = g;
+                stride = size;
+                bool far = most > 0.0 && size > most;
+                if (far) by *= most / size;
+                if (!far && steps >= $DESCENT_PLAIN && ratio > $DESCENT_SLOW && ratio < 1.0)
+                    by /= max(1.0 - ratio, $DESCENT_FASTEST);
+                if (beyond * g < 0.0 && length(by) > $DESCENT_ACROSS * length(other - p))
+                    by = clamp(g / (g - beyond), $DESCENT_LEAST, 1.0 - $DESCENT_LEAST) * (other - p);
+$end
                 p += by;
                 v = sum;
                 ahead = g + dot(v, by);
@@ -137,6 +162,7 @@ $if FILMS
                 best_v = v;
                 best_way = off;
                 best_g = g;
+                best_slope = min(max(slope, $MIN_SLOPE), 1.0);
 $end
                 along = dot(off, n) * n - off;
                 slide = length(v) >= $STEADY * slope && min(gain, length(off) - abs(dot(off, n))) > fine &&
@@ -181,7 +207,7 @@ $if FILMS
             edge = normalize(edge);
             vec3 side = normalize(fathom_perpendicular(edge));
             float turn = $FILM_TURN * float(look);
-            around = $FILM_LOOK * thick * (cos(turn) * side + sin(turn) * cross(edge, side));
+            around = $FILM_LOOK * thick / best_slope * (cos(turn) * side + sin(turn) * cross(edge, side));
             continue;
         }
         if (none) {

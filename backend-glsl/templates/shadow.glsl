@@ -50,6 +50,7 @@ $end
 $if !UNIT_SLOPE
     float arm = h, bent = 0.0; // how far the taps are above the value, all together
     bool again = false;        // whether the arm is the second
+    vec3 down = vec3(0.0);     // to the edge, against the gradient
 $end
     while (true) {
         float f = 0.0;
@@ -66,7 +67,7 @@ $include shadow_ahead
             vec3 p = q + x * l;
 $if !SHADED_APART
 $if !UNIT_SLOPE
-            if (tap > 0) p += arm * fathom_corner(tap - 1);
+            if (tap > 0) p += tap > 4 ? down : arm * fathom_corner(tap - 1);
 $end
 $end
 $if AROUND
@@ -115,7 +116,7 @@ $if SHADED_APART
         if (!ahead) {
             vec3 p = q + x * l;
 $if !UNIT_SLOPE
-            if (tap > 0) p += arm * fathom_corner(tap - 1);
+            if (tap > 0) p += tap > 4 ? down : arm * fathom_corner(tap - 1);
 $end
             f = fathom_shaded(p);
         }
@@ -152,7 +153,7 @@ $else
             arm = max(h, $SHADOW_ARM * value);
             again = false;
         }
-        if (tap > 0) {
+        if (tap > 0 && tap < 5) {
             sum += f * fathom_corner(tap - 1);
             bent += f;
         }
@@ -169,6 +170,13 @@ $else
             tap = 1;
             continue;
         }
+        float edge = shadow * angle * x;
+        if (tap == 4 && near >= edge && edge > h) {
+            down = -edge / max(length(sum), 1e-30) * sum;
+            tap = 5;
+            continue;
+        }
+        if (tap == 5 && f < 0.0) near = edge * value / (value - f);
 $end
         quiet = x - $CALM * (min(near, value) - shadow * angle * x);
         if (near < shadow * angle * x) {

@@ -34,6 +34,12 @@ TEST_CASE("two texts of one solid give one picture") {
         {"sphere(1)", "implicit(p => 1000 * (length(p) - 1), within: ball(2))"},
         {"box([1, 0.5, 0.7]).rotate(20deg)", "box([1, 0.5, 35]).scale([1, 1, 0.02]).rotate(20deg)"},
         {"sphere(1)", "implicit(p => dot(p, p) - 1, within: ball(2))", 2 * few},
+        // Steep at the surface and flat far off; and flat at the surface.
+        {"sphere(1)", "implicit(p => atan(50 * (length(p) - 1)), within: ball(1.3))"},
+        {"sphere(1)", "implicit(p => exp(-8.0) - exp(-8 * dot(p, p)), within: ball(3))", 3 * few},
+        {"sphere(1)",
+         "implicit(p => { let d = length(p) - 1; d * d * d + 0.003 * d }, within: ball(1.3))",
+         2 * few},
         {"sphere(1)", "sphere(0.5).scale(2)"},
         {"torus(1, 0.3)", "implicit(p => length([length(p.xz) - 1, p.y]) - 0.3, within: ball(3))"},
         {"box(1.5) | sphere(1)", "sphere(1) | (box(1.5) & box(9))"},
