@@ -20,14 +20,8 @@ constexpr std::uint32_t tallest_tree = 1024;
 
 } // namespace
 
-static Token behind(const std::vector<Token> &tokens) {
-    const std::uint32_t end = tokens.empty() ? 0 : tokens.back().end;
-    return {Tok::End, false, end, end};
-}
-
 Builder::Builder(const Source &source, SourceId id, const Tokens &tokens, Diagnostics &diagnostics)
-    : source_(source), id_(id), tokens_(tokens), past_(behind(tokens.tokens)),
-      diagnostics_(diagnostics) {
+    : ForeignSyntax(source, id, tokens, diagnostics) {
     ast_.source = id;
     ast_.exprs.reserve(tokens.tokens.size() / 2);
     expr_heights_.reserve(tokens.tokens.size() / 2);
@@ -67,12 +61,6 @@ Builder::Item Builder::pop_item() { return take_back(items_); }
 std::optional<Builder::Item> Builder::pop_maybe_item() { return take_back(maybe_items_); }
 std::optional<TypeExpr> Builder::pop_maybe_type() { return take_back(maybe_types_); }
 BlockId Builder::pop_block() { return take_back(blocks_); }
-std::uint32_t Builder::word(std::string_view text) {
-    const auto [it, added] =
-        words_.try_emplace(text, static_cast<std::uint32_t>(ast_.words.size()));
-    if (added) ast_.words.emplace_back(text);
-    return it->second;
-}
 
 Identifier Builder::pop_name() { return *take_back(names_); }
 

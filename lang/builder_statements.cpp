@@ -9,15 +9,6 @@
 
 namespace fathom::lang {
 
-namespace {
-
-bool opens(Tok kind) {
-    return is_one_of(kind, {Tok::Open, Tok::FreshOpen, Tok::LambdaOpen, Tok::ListOpen,
-                            Tok::FreshListOpen, Tok::Body, Tok::Trailing, Tok::StrayBrace});
-}
-
-} // namespace
-
 // -- blocks --------------------------------------------------------------------------------------
 
 void Builder::add_stmt(StmtKind kind, Span span, std::uint32_t height) {
@@ -225,12 +216,6 @@ bool Builder::names_function(ExprId id) {
            });
 }
 
-// Whether a name was declared above, anywhere: then an assignment means to change it.
-bool Builder::is_declared(const std::string &name) {
-    for (; known_ < declared_.size(); ++known_) known_names_.insert(declared_[known_]);
-    return known_names_.count(name) > 0;
-}
-
 void Builder::assignment() {
     const Index at = take_back(remembered_);
     const Item value = pop_item();
@@ -336,26 +321,10 @@ void Builder::drop(const Mark &mark) {
     in_function_ = mark.in_function;
 }
 
-bool Builder::ends_statement(Index at) const {
-    return at >= tokens_.tokens.size() || kind(at) == Tok::End || kind(at) == Tok::BraceClose;
-}
-
-// Past the place where the statement broke, at the line end or `}` that ends it.
-Builder::Index Builder::statement_end(Index first) const {
-    Index i = first;
-    while (i < tokens_.tokens.size()) {
-        if (opens(kind(i))) {
-            i = match(i) + 1;
-        } else if (kind(i) == Tok::BraceClose && match(i) < first) {
-            return i; // of the block around it, which no statement leaves
-        } else if (i >= failed_ && (kind(i) == Tok::BraceClose ||
-                                    (kind(i) == Tok::End && kind(i + 1) != Tok::Else))) {
-            return i;
-        } else {
-            ++i;
-        }
-    }
-    return i;
+// A statement that is not in the tree still declares the name, so that its uses are no new errors.
+void Builder::declare_poison(Index name) {
+    declared_.push_back(text(name));
+    add_stmt(Let{identifier(name), {}, add(Poison{}, span(name), 1), {}}, span(name), 1);
 }
 
 // What stands for the statement in the tree. Its name stays declared, so that its uses are no new

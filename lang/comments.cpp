@@ -1,5 +1,9 @@
-// Comments, which are kept for the formatter; and those that their writer did not mean as one.
+// Comments, which are kept for the formatter; those that their writer did not mean as one; and what a
+// `#` begins, which is a colour here.
 #include "lang/lexer.h"
+
+#include <algorithm>
+#include <fmt/format.h>
 
 namespace fathom::lang {
 
@@ -45,6 +49,47 @@ void Lexer::unclosed_comment(std::uint32_t begin, std::uint32_t end) {
     words_.comments.push_back({begin, end, false});
     report(Code::UnclosedBracket, begin, begin + 2, "this comment is never closed")
         .help("close it with `*/`; comments do not nest");
+}
+
+std::uint32_t Lexer::hash(std::uint32_t begin, std::uint32_t end) {
+    const std::string_view digits = slice(begin + 1, end);
+    const bool all_hex = std::all_of(digits.begin(), digits.end(), is_hex);
+    if (all_hex && (digits.size() == 3 || digits.size() == 6 || digits.size() == 8)) {
+        add(Tok::Color, begin, end);
+        return end;
+    }
+    if (digits.empty() && !fresh_line_ && lisp_vector(end)) {
+        if (!told_before(begin, end, {{span(begin, end), ""}}))
+            report(Code::BadCharacter, begin, end, "a vector is written `[x, y, z]`")
+                .help("leave the `#` away", {{span(begin, end), ""}});
+        return end;
+    }
+    // `# remark` of Python, and `#version`, `#include`: the rest of the line is theirs.
+    if (digits.empty() || (fresh_line_ && !all_hex)) {
+        const auto line_end = static_cast<std::uint32_t>(
+            std::min(source_.text.find('\n', begin), source_.text.size()));
+        if (end < source_.text.size() && source_.text[end] == '(') { // OpenSCAD's modifier
+            report(Code::ForeignSyntax, begin, begin + 1, "there are no modifiers of shapes")
+                .help("leave it away", {{span(begin, begin + 1), ""}});
+            return begin + 1;
+        }
+        if (digits == "define")
+            if (const std::uint32_t head_end = define(begin, end); head_end > 0) return head_end;
+        if (digits.empty())
+            report(Code::ForeignSyntax, begin, begin + 1, "a comment begins with `//`")
+                .help("write `//`", {{span(begin, begin + 1), "//"}});
+        else
+            directive(begin, end, line_end);
+        return line_end;
+    }
+    add(Tok::Bad, begin, end);
+    Diagnostic &d =
+        report(Code::BadColor, begin, end, "a colour takes 3, 6 or 8 hex digits after the `#`");
+    if (all_hex)
+        d.note(fmt::format("here are {}", digits.size()));
+    else
+        d.note("hex digits are 0 to 9 and a to f");
+    return end;
 }
 
 } // namespace fathom::lang

@@ -73,18 +73,6 @@ bool Builder::already_reported(Wanted wanted, Index at) const {
     return is_virtual(match(enclosing(at)));
 }
 
-// The bracket around a token, or 0.
-Builder::Index Builder::enclosing(Index at) const {
-    for (Index i = at; i-- > 0;) {
-        const Index partner = match(i);
-        if (partner < i)
-            i = partner;
-        else if (partner > i)
-            return i;
-    }
-    return 0;
-}
-
 std::string Builder::describe(Index at) const {
     if (at >= tokens_.tokens.size()) return "the end of the file";
     const Token &t = token(at);

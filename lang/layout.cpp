@@ -1,7 +1,7 @@
 // From words to the tokens of the grammar: which line ends end a statement, which bracket closes
 // which, and what each `(` and `{` is for. After this, line ends, comments and unbalanced brackets
 // are no concern of the grammar's. Knows nothing of expressions.
-#include "lang/token.h"
+#include "lang/foreign/foreign.h"
 
 #include <algorithm>
 #include <unordered_map>

@@ -94,30 +94,6 @@ void read_color(std::string_view word, double (&rgba)[4]) {
     }
 }
 
-void Lexer::add(Tok kind, std::uint32_t begin, std::uint32_t end) {
-    words_.tokens.push_back({kind, fresh_line_, begin, end});
-    fresh_line_ = false;
-}
-
-// A word that takes the place of a sign, with spaces where it would run into another: `a&&b`.
-std::string Lexer::set_apart(std::uint32_t begin, std::uint32_t end, std::string_view ours) const {
-    const std::string_view all = source_.text;
-    std::string out(ours);
-    if (out.empty() || !is_word_char(out[0])) return out;
-    if (begin > 0 && is_word_char(all[begin - 1])) out.insert(0, " ");
-    if (end < all.size() && (is_word_char(all[end]) || all[end] == '(')) out += " ";
-    return out;
-}
-
-Diagnostic &Lexer::foreign(std::uint32_t begin, std::uint32_t end, std::string message,
-                           std::string replacement) {
-    std::string_view shown = replacement;
-    if (shown.ends_with(' ')) shown.remove_suffix(1);
-    std::string help = "write " + quoted_code(shown);
-    return report(Code::ForeignSyntax, begin, end, std::move(message))
-        .help(std::move(help), {{span(begin, end), std::move(replacement)}});
-}
-
 void Lexer::word(std::uint32_t begin, std::uint32_t end) {
     const std::string_view text = slice(begin, end);
     Tok kind = Tok::Name;

@@ -6,7 +6,6 @@
 
 #include "lang/builder.h"
 #include "lang/lexer.h"
-#include "lang/program/program.h"
 
 #include <fmt/format.h>
 #include <tao/pegtl.hpp>

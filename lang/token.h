@@ -123,24 +123,6 @@ struct Tokens {
 };
 
 Words read_words(const Source &source, SourceId id, Diagnostics &diagnostics); // in parse.cpp
-// The words with functions of other languages read as ours, reported; empty where there are none
-// (foreign_lambdas.cpp).
-std::vector<Token> read_foreign_lambdas(const Source &source, SourceId id,
-                                        const std::vector<Token> &words, Diagnostics &diagnostics);
-// The same for types, casts, macros and declarations (foreign_forms.cpp), and for Rust's `match`
-// (foreign_match.cpp).
-std::vector<Token> read_foreign_forms(const Source &source, SourceId id,
-                                      const std::vector<Token> &words, Diagnostics &diagnostics);
-std::vector<Token> read_foreign_matches(const Source &source, SourceId id,
-                                        const std::vector<Token> &words, Diagnostics &diagnostics);
-// Whole statements, as OpenSCAD's `intersection_for`, and brackets that are missing
-// (foreign_blocks.cpp).
-std::vector<Token> read_foreign_blocks(const Source &source, SourceId id,
-                                       const std::vector<Token> &words, Diagnostics &diagnostics);
-// Casts and calls that name a type (foreign_casts.cpp).
-std::vector<Token> read_foreign_casts(const Source &source, SourceId id,
-                                      const std::vector<Token> &words, Diagnostics &diagnostics);
-bool is_foreign_transform(std::string_view name); // what OpenSCAD writes before a shape
 // Settles where statements end, and reports what cannot be a word.
 Tokens lay_out(const Source &source, SourceId id, const Words &words, Diagnostics &diagnostics);
 

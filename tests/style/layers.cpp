@@ -121,6 +121,22 @@ TEST_CASE("a folder includes only what its layer may see") {
     CHECK(counted > 100); // the test reads what it means to read
 }
 
+TEST_CASE("what answers other languages has one door") {
+    const std::string room = "lang/foreign/", door = "lang/foreign/foreign.h";
+    const Names touched{"lang/reading.h", "lang/lexer.h", "lang/token.h", "lang/vocabulary.h"};
+    bool entered = false;
+    for (const SourceFile &file : read_sources())
+        for (const Include &include : includes_of(file)) {
+            const bool inside = file.file.starts_with(room);
+            INFO(place(include));
+            if (!inside && include.name.starts_with(room)) CHECK(include.name == door);
+            if (inside && include.name.starts_with("lang/") && !include.name.starts_with(room))
+                CHECK(touched.count(include.name) == 1);
+            entered = entered || (!inside && include.name == door);
+        }
+    CHECK(entered);
+}
+
 TEST_CASE("a foreign library is seen by one folder") {
     std::map<std::string, Names> users;
     for (const SourceFile &file : read_sources())

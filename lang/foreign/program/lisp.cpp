@@ -1,0 +1,98 @@
+// Bauble and libfive as a tree: forms in parentheses, Bauble's pipe, and names with hyphens.
+#include "lang/foreign/program/program.h"
+
+namespace fathom::lang::program {
+
+namespace {
+
+class LispReader {
+  public:
+    explicit LispReader(std::string_view text) : text_(text) {}
+
+    std::vector<Node> all() {
+        std::vector<Node> out;
+        while (skip()) {
+            if (text_[at_] != '(') throw Unsure{};
+            out.push_back(form());
+        }
+        return out;
+    }
+
+  private:
+    bool skip() { // blanks and comments; false at the end
+        while (at_ < text_.size()) {
+            const char c = text_[at_];
+            if (c == ';' || c == '#')
+                at_ = std::min(text_.find('\n', at_), text_.size());
+            else if (c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == ',')
+                ++at_;
+            else
+                return true;
+        }
+        return false;
+    }
+
+    Node form() {
+        constexpr int deepest = 60, most = 5000, most_pipes = 300;
+        if (++depth_ > deepest || ++count_ > most) throw Unsure{};
+        const char close = text_[at_++] == '(' ? ')' : ']';
+        Node out = node(Is::List, close == ')' ? "(" : "[");
+        bool piped = false;
+        Node before;
+        while (true) {
+            if (!skip()) throw Unsure{};
+            const char c = text_[at_];
+            if (c == close || (c == '|' && close == ')')) {
+                ++at_;
+                if (piped) { // `(a | f x)` is `(f a x)`
+                    if (out.parts.empty()) throw Unsure{};
+                    out.parts.insert(out.parts.begin() + 1, std::move(before));
+                }
+                if (c == close) break;
+                if (!piped && out.parts.size() == 1) out = Node(out.parts[0]);
+                if (++pipes_ > most_pipes) throw Unsure{};
+                before = std::move(out);
+                out = node(Is::List, "(");
+                piped = true;
+                continue;
+            }
+            out.parts.push_back(c == '(' || c == '[' ? form() : atom());
+        }
+        --depth_;
+        return out;
+    }
+
+    Node atom() {
+        const std::size_t begin = at_;
+        while (at_ < text_.size() &&
+               std::string_view(" \n\t\r()[]|;,").find(text_[at_]) == std::string_view::npos)
+            ++at_;
+        const std::string_view word = text_.substr(begin, at_ - begin);
+        if (word.empty() || word.find_first_of("{}\"'`@~") != std::string_view::npos)
+            throw Unsure{};
+        const std::size_t slash = word.find('/', 1);
+        if (slash != std::string_view::npos && slash + 1 < word.size()) // `tau/4`
+            return node(Is::Binary, "/",
+                        {plain(word.substr(0, slash)), plain(word.substr(slash + 1))});
+        return plain(word);
+    }
+
+    static Node plain(std::string_view word) {
+        const std::string_view figures = word.substr(word[0] == '-' ? 1 : 0);
+        const bool number =
+            !figures.empty() && figures.find_first_not_of("0123456789.") == std::string_view::npos;
+        if (!number) return node(Is::Name, std::string(word));
+        Node n = node(Is::Number, std::string(figures));
+        return word[0] == '-' ? node(Is::Unary, "-", {std::move(n)}) : n;
+    }
+
+    std::string_view text_;
+    std::size_t at_ = 0;
+    int depth_ = 0, count_ = 0, pipes_ = 0;
+};
+
+} // namespace
+
+std::vector<Node> read_lisp(std::string_view text) { return LispReader(text).all(); }
+
+} // namespace fathom::lang::program

@@ -1,0 +1,410 @@
+// The shapes of Bauble, whose boxes and heights are halves and whose up is y, and of libfive, whose
+// boxes have two corners and whose up is z.
+#include "base/text.h"
+#include "lang/foreign/program/program.h"
+
+#include <algorithm>
+#include <array>
+
+namespace fathom::lang::program {
+
+namespace {
+
+Written solid_of_lisp(std::string text) { return {std::move(text), as_call, Kind::Solid}; }
+
+std::string head_of(const Node &form) {
+    if (form.is != Is::List || form.text != "(" || form.parts.empty() ||
+        form.parts[0].is != Is::Name)
+        return {};
+    std::string head = form.parts[0].text; // Bauble has `tile:` and `tile*`
+    if (head.size() > 1 && (head.back() == ':' || head.back() == '*')) head.pop_back();
+    return head;
+}
+bool is_vector(const Node &n) { return n.is == Is::List && n.text == "["; }
+
+// `x`, `-y`; empty where it is no axis.
+std::string axis_text(const Node &n) {
+    if (n.is != Is::Name) return {};
+    const std::string_view name = n.text;
+    const bool down = name.starts_with("-");
+    const std::string_view axis = name.substr(down ? 1 : 0);
+    if (axis != "x" && axis != "y" && axis != "z") return {};
+    return std::string(down ? "-" : "") + static_cast<char>(axis[0] - 32);
+}
+
+std::string along(std::string shape, const std::string &axis) {
+    return axis.empty() || axis == "Y" ? shape : shape + ".orient(Y, " + axis + ")";
+}
+
+} // namespace
+
+// A form's parts behind its head: axes, words with `:`, and the rest, in their order.
+Writer::Form Writer::form_of(const Node &n) const {
+    Form f;
+    bool was_value = false; // an axis behind a value is no name of the program's own
+    for (std::size_t i = 1; i < n.parts.size(); ++i) {
+        const Node &part = n.parts[i];
+        if (part.is == Is::Name && part.text.starts_with(":")) {
+            if (i + 1 == n.parts.size()) throw Unsure{};
+            f.named[part.text.substr(1)] = &n.parts[++i];
+        } else if (const std::string axis = axis_text(part);
+                   !axis.empty() && (!find(part.text) || (was_value && i + 1 < n.parts.size()))) {
+            was_value = false;
+            f.axes.push_back({axis, f.rest.size()});
+        } else {
+            f.rest.push_back(&part);
+            was_value = true;
+        }
+    }
+    return f;
+}
+
+std::string Writer::doubled(const Node &n) {
+    if (is_vector(n)) {
+        std::string out = "[";
+        for (const Node &part : n.parts) out += (out.size() > 1 ? ", " : "") + doubled(part);
+        return out + "]";
+    }
+    const std::string of = lisp_text(n, 10);
+    const auto number = parse_number(of);
+    return number ? format_shortest(*number * 2) : "2 * " + of;
+}
+
+std::string Writer::lisp_text(const Node &n, int needs) { return wrapped(lisp(n), needs); }
+
+Written Writer::lisp(const Node &n) {
+    constexpr int most = 20000;
+    if (++nodes_ > most) throw Unsure{};
+    if (n.is == Is::Name) {
+        if (const Written *w = find(n.text)) return *w;
+        if (n.text == "t") return {"time", as_call, Kind::Number};
+        if (n.text == "tau" || n.text == "pi") return {n.text, as_call, Kind::Number};
+        throw Unsure{};
+    }
+    if (n.is == Is::Unary || n.is == Is::Number) return value(n);
+    if (n.is == Is::Binary) {
+        return {lisp_text(n.parts[0], 9) + " " + n.text + " " + lisp_text(n.parts[1], 10), 9,
+                Kind::Number};
+    }
+    if (is_vector(n)) {
+        std::string out = "[";
+        for (const Node &part : n.parts) out += (out.size() > 1 ? ", " : "") + lisp_text(part);
+        return {out + "]", as_call, Kind::Vector};
+    }
+    const std::string head = head_of(n);
+    if (head.empty() || n.parts.size() < 2) {
+        if (n.parts.size() == 3 && n.parts[1].is == Is::Name &&
+            std::string_view("/*+-").find(n.parts[1].text) < 4) // `(tau / 4)`
+            return lisp(node(Is::List, "(", {n.parts[1], n.parts[0], n.parts[2]}));
+        if (const Written *own = head.empty() ? nullptr : find(head); own && n.parts.size() == 1)
+            return {call_text(own->text, {}), as_call, Kind::Unknown};
+        throw Unsure{};
+    }
+    if (find(head)) return lisp_own(n);
+    if (n.parts.size() == 3 && n.parts[1].is == Is::Name && n.parts[1].text.size() == 1 &&
+        std::string_view("/*+").find(n.parts[1].text) < 3)
+        return lisp(node(Is::List, "(", {n.parts[1], n.parts[0], n.parts[2]}));
+    if (const auto made = lisp_number(head, n)) return *made;
+    const Form f = form_of(n);
+    if (const auto made = lisp_joined(head, n)) return *made;
+    if (const auto made = lisp_solid(head, f)) return *made;
+    if (const auto made = lisp_change(head, n, f)) return *made;
+    throw Unsure{};
+}
+
+Written Writer::lisp_own(const Node &n) {
+    const Written own = *find(n.parts[0].text);
+    if (own.kind != Kind::Function) throw Unsure{};
+    std::vector<std::string> arguments;
+    for (std::size_t i = 1; i < n.parts.size(); ++i) arguments.push_back(lisp_text(n.parts[i]));
+    return {call_text(own.text, arguments), as_call, Kind::Unknown};
+}
+
+std::optional<Written> Writer::lisp_number(const std::string &head, const Node &n) {
+    if (head.size() == 1 && std::string_view("+-*/").find(head[0]) < 4) {
+        const int binds = head == "+" || head == "-" ? 8 : 9;
+        if (n.parts.size() == 2 && head == "-")
+            return Written{"-" + lisp_text(n.parts[1], 11), 10, Kind::Number};
+        std::string out;
+        for (std::size_t i = 1; i < n.parts.size(); ++i)
+            out +=
+                (i > 1 ? " " + head + " " : "") + lisp_text(n.parts[i], i > 1 ? binds + 1 : binds);
+        return Written{out, binds, Kind::Number};
+    }
+    constexpr std::array<std::string_view, 16> same = {
+        "sin", "cos", "tan", "abs",  "sqrt",  "min",  "max",   "mod",
+        "exp", "log", "pow", "atan", "floor", "ceil", "round", "length"};
+    if (head == "square") {
+        const Written w = lisp(n.parts[1]);
+        return Written{wrapped(w, as_call) + " ^ 2", 11, Kind::Number};
+    }
+    if (std::ranges::find(same, head) == same.end()) return std::nullopt;
+    std::vector<std::string> arguments;
+    for (std::size_t i = 1; i < n.parts.size(); ++i) arguments.push_back(lisp_text(n.parts[i]));
+    return Written{call_text(head, arguments), as_call, Kind::Number};
+}
+
+std::optional<Written> Writer::lisp_joined(const std::string &head, const Node &n) {
+    if (head == "apply" && n.parts.size() == 3) { // `(apply union (map f (range 5)))`
+        const Node &list = n.parts[2];
+        if (n.parts[1].text != "union" || head_of(list) != "map" || list.parts.size() != 3)
+            throw Unsure{};
+        const Node &f = list.parts[1], &over = list.parts[2];
+        const bool counts = head_of(over) == "range" || head_of(over) == "iota";
+        const bool lambda = head_of(f) == "fn" || head_of(f) == "lambda";
+        if (!lambda || f.parts.size() != 3 || f.parts[1].parts.size() != 1) throw Unsure{};
+        if (counts && over.parts.size() != 2) throw Unsure{};
+        const std::string range = counts ? "0.." + lisp_text(over.parts[1], 8) : lisp_text(over);
+        scopes_.emplace_back();
+        const std::string name = declare(f.parts[1].parts[0].text, Kind::Number);
+        const std::string body = lisp_text(f.parts[2]);
+        scopes_.pop_back();
+        return solid_of_lisp("union([for " + name + " in " + range + " { " + body + " }])");
+    }
+    if (head == "lambda-shape" && n.parts.size() == 3) {
+        scopes_.emplace_back();
+        for (const Node &axis : n.parts[1].parts) {
+            if (axis.text != "x" && axis.text != "y" && axis.text != "z") throw Unsure{};
+            scopes_.back().names[axis.text] = {"p." + axis.text, as_call, Kind::Number};
+        }
+        const std::string field = lisp_text(n.parts[2]);
+        scopes_.pop_back();
+        return solid_of_lisp("implicit(p => " + field + ", within: everywhere)");
+    }
+    if (head != "union" && head != "intersect" && head != "intersection" && head != "subtract" &&
+        head != "difference" && head != "blend")
+        return std::nullopt;
+    std::vector<Written> parts;
+    std::string k;
+    for (std::size_t i = 1; i < n.parts.size(); ++i) {
+        const Node &part = n.parts[i];
+        if (part.is == Is::Name && part.text == ":r" && i + 1 < n.parts.size())
+            k = lisp_text(n.parts[++i]);
+        else if (part.is == Is::Name && part.text.starts_with(":"))
+            throw Unsure{};
+        else
+            parts.push_back(lisp(part));
+    }
+    if (head == "blend") { // libfive: the last is how far
+        if (parts.size() != 3 || parts[2].kind != Kind::Number) throw Unsure{};
+        k = parts[2].text;
+        parts.pop_back();
+    }
+    return combined(head == "blend" ? "union" : head, std::move(parts), k);
+}
+
+std::optional<Written> Writer::lisp_solid(const std::string &name, const Form &f) {
+    const auto round = f.named.find("r");
+    const std::string axis = f.axes.empty() ? "" : f.axes[0].first;
+    const auto at = [&](std::size_t i) { return lisp_text(*f.rest.at(i)); };
+    const auto put = [&](std::string shape, std::size_t i) { // libfive's place
+        return f.rest.size() > i ? shape + ".translate(" + at(i) + ")" : shape;
+    };
+    for (const auto &[key, given_value] : f.named)
+        if (key != "r") return std::nullopt;
+    const std::size_t count = f.rest.size();
+    if (count == 0 && name != "half-space") return std::nullopt;
+    if (name == "sphere" && count <= 2) return solid_of_lisp(put("sphere(" + at(0) + ")", 1));
+    if ((name == "box" || name == "box-exact" || name == "box-mitered") && count == 2 &&
+        is_vector(*f.rest[0]) && is_vector(*f.rest[1]))
+        return solid_of_lisp(between_corners("box", lisp(*f.rest[0]), lisp(*f.rest[1])));
+    if ((name == "box" || name == "rounded-box") && count == 1) {
+        const std::string size = doubled(*f.rest[0]);
+        if (round != f.named.end())
+            return solid_of_lisp("rounded_box(" + size + ", radius: " + lisp_text(*round->second) +
+                                 ")");
+        return solid_of_lisp("box(" + size + ")");
+    }
+    if (name == "cylinder" && count == 2 && !axis.empty()) {
+        const std::string r = at(0), h = doubled(*f.rest[1]);
+        if (round != f.named.end())
+            return solid_of_lisp(along("rounded_cylinder(" + r + ", " + h +
+                                           ", rounding: " + lisp_text(*round->second) + ")",
+                                       axis));
+        return solid_of_lisp(along("cylinder(" + r + ", " + h + ")", axis));
+    }
+    if ((name == "cylinder" || name == "cylinder-z" || name == "cone-z") && axis.empty() &&
+        count >= 2 && count <= 3) { // libfive: from its foot up z
+        const std::string h = at(1);
+        return solid_of_lisp(put(std::string(name == "cone-z" ? "cone(" : "cylinder(") + at(0) +
+                                     ", " + h + ").orient(Y, Z).translate(z: " + halved(h) + ")",
+                                 2));
+    }
+    if (name == "torus" && count == 2 && !axis.empty())
+        return solid_of_lisp(along("torus(" + at(0) + ", " + at(1) + ")", axis));
+    if (name == "torus-z" && count >= 2)
+        return solid_of_lisp(put("torus(" + at(0) + ", " + at(1) + ").orient(Y, Z)", 2));
+    if (name == "half-space" && !axis.empty() && count <= 1) // what lies on the axis' side
+        return solid_of_lisp("plane(" + negated(axis) +
+                             (count == 1 ? ", " + negated(at(0)) : std::string()) + ")");
+    if (name == "ellipsoid" && count == 1) return solid_of_lisp("ellipsoid(" + at(0) + ")");
+    if (name == "octahedron" && count == 1) return solid_of_lisp("octahedron(" + at(0) + ")");
+    if (name == "circle" && count <= 2)
+        return Written{put("circle(" + at(0) + ")", 1), as_call, Kind::Flat};
+    if (name == "rectangle" && count == 2)
+        return Written{between_corners(name, lisp(*f.rest[0]), lisp(*f.rest[1])), as_call,
+                       Kind::Flat};
+    return std::nullopt;
+}
+
+// `(rotate s y 0.5)`, `(move s x 10 y 5)`, `(move-x s 10)`.
+std::optional<Written> Writer::lisp_change(const std::string &name, const Node &n, const Form &f) {
+    if (f.rest.empty()) return std::nullopt;
+    if (name == "morph" && f.rest.size() == 3) {
+        std::vector<Written> shapes;
+        std::string by;
+        for (const Node *part : f.rest) {
+            Written w = lisp(*part);
+            if (w.kind == Kind::Number && by.empty())
+                by = w.text;
+            else
+                shapes.push_back(std::move(w));
+        }
+        if (shapes.size() != 2) throw Unsure{};
+        return Written{call_text("blend", {shapes[1].text, shapes[0].text, by}), as_call,
+                       Kind::Solid};
+    }
+    const Node &color_part = n.parts.back();
+    const bool by_name = name == "color" && n.parts.size() == 3 && color_part.is == Is::Name &&
+                         !find(color_part.text);
+    if (by_name) { // `color red`
+        const Written painted = lisp(n.parts[1]);
+        return Written{wrapped(painted, as_call) + ".paint(" + color_part.text + ")", as_call,
+                       painted.kind};
+    }
+    const Written of = lisp(*f.rest[0]);
+    const std::string head = wrapped(of, as_call) + ".";
+    const auto changed = [&](const std::string &text) {
+        return Written{head + text, as_call, of.kind};
+    };
+    const auto limit = f.named.find("limit");
+    for (const auto &[key, given_value] : f.named)
+        if (key != "limit" || name != "tile") return std::nullopt;
+    const std::size_t count = f.rest.size();
+    const auto at = [&](std::size_t i) { return lisp_text(*f.rest.at(i)); };
+    const bool by_axis = name.size() > 2 && name[name.size() - 2] == '-';
+    if (by_axis && f.axes.empty() && count == 2) { // libfive's `rotate-x`
+        Node same = n;
+        same.parts[0].text = name.substr(0, name.size() - 2);
+        same.parts.insert(same.parts.end() - 1, node(Is::Name, name.substr(name.size() - 1)));
+        return lisp_change(same.parts[0].text, same, form_of(same));
+    }
+    if (by_axis && count == 1) {
+        const std::string axis(1, static_cast<char>(name.back() - 32));
+        const std::string base = name.substr(0, name.size() - 2);
+        if (base == "symmetric" || base == "mirror") return changed("mirror(" + axis + ")");
+        if (base == "reflect") return changed("reflect(" + axis + ")");
+        return std::nullopt;
+    }
+    if (name == "extrude-z" && count == 3)
+        return Written{head + "extrude(" + lisp_text(*f.rest[2]) + " - " +
+                           lisp_text(*f.rest[1], 9) + ").translate(z: (" + at(1) + " + " + at(2) +
+                           ") / 2)",
+                       as_call, Kind::Solid};
+    if (name == "move" || name == "rotate" || name == "scale") {
+        if (f.axes.empty()) {
+            if (count != 2 || name == "rotate") return std::nullopt;
+            return changed((name == "move" ? "translate(" : "scale(") + at(1) + ")");
+        }
+        if (count != f.axes.size() + 1) return std::nullopt;
+        std::string all;
+        for (std::size_t i = 0; i < f.axes.size(); ++i) {
+            if (f.axes[i].second != i + 1 || f.axes[i].first.size() != 1) return std::nullopt;
+            const char axis = f.axes[i].first[0];
+            if (name == "move")
+                all += (all.empty() ? "translate(" : ", ") +
+                       std::string(1, static_cast<char>(axis + 32)) + ": " + at(i + 1);
+            else if (name == "rotate")
+                all += (all.empty() ? "rotate(" : ".rotate(") + at(i + 1) + ", axis: " + axis + ")";
+            else
+                return std::nullopt;
+        }
+        return changed(all + (name == "move" ? ")" : ""));
+    }
+    if (name == "mirror" && f.axes.size() == 1 && count == 1)
+        return changed("mirror(" + f.axes[0].first + ")");
+    if ((name == "shell" || name == "offset" || name == "expand") && count == 2)
+        return changed((name == "shell" ? "shell(" : "offset(") + at(1) + ")");
+    if (name == "twist" && count == 2 && f.axes.size() == 1)
+        return changed("twist(" + at(1) + ", axis: " + f.axes[0].first + ")");
+    if (name == "radial" && count == 2 && f.axes.size() == 1)
+        return changed("repeat_polar(" + at(1) + ", axis: " + f.axes[0].first + ")");
+    if (name == "tile" && count == 2)
+        return changed("repeat(" + at(1) +
+                       (limit == f.named.end() ? "" : ", count: " + lisp_text(*limit->second)) +
+                       ")");
+    if (name == "slow" && count == 2) {
+        lost_.insert("`slow`, as bounds are derived here");
+        return of;
+    }
+    if (name != "color" || n.parts.size() != 3) return std::nullopt;
+    const Node &color = n.parts[2];
+    if (is_vector(color) && color.parts.size() == 3) {
+        const std::string parts = at(1);
+        return changed("paint(rgb(" + parts.substr(1, parts.size() - 2) + "))");
+    }
+    if (head_of(color) == "hsv" && color.parts.size() == 4)
+        return changed("paint(" +
+                       call_text("hsv", {lisp_text(color.parts[1]), lisp_text(color.parts[2]),
+                                         lisp_text(color.parts[3])}) +
+                       ")");
+    return std::nullopt;
+}
+
+std::string Writer::program(const std::vector<Node> &forms) {
+    for (const Node &form : forms) lisp_statement(form);
+    if (!shown_) throw Unsure{};
+    return out_;
+}
+
+// `(def r 20)`, `(define (f x) …)`, `(let [r 2] …)`, or a shape.
+void Writer::lisp_statement(const Node &form) {
+    const std::string head = head_of(form);
+    const std::size_t count = form.parts.size();
+    if (head.starts_with("set-") || head == "use" || head == "use-modules") return;
+    if ((head == "def" || head == "define" || head == "defn") && count >= 3) {
+        const bool scheme = form.parts[1].is == Is::List;
+        const Node *named = scheme ? &form.parts[1].parts.at(0) : &form.parts[1];
+        if (named->is != Is::Name || count != (head == "defn" ? 4u : 3u)) throw Unsure{};
+        std::string name = named->text;
+        std::ranges::replace(name, '-', '_');
+        const bool function = scheme || head == "defn";
+        if (!function) {
+            const Written w = lisp(form.parts[2]);
+            const std::string ours = declare(name, w.kind);
+            scopes_.back().names[named->text] = scopes_.back().names[name];
+            return line("let " + ours + " = " + w.text);
+        }
+        const std::string ours = declare(name, Kind::Function);
+        scopes_.back().names[named->text] = scopes_.back().names[name];
+        const std::vector<Node> &list = form.parts[scheme ? 1 : 2].parts;
+        scopes_.emplace_back();
+        std::string parameters_of;
+        for (std::size_t i = scheme ? 1 : 0; i < list.size(); ++i) {
+            if (list[i].is != Is::Name) throw Unsure{};
+            parameters_of +=
+                (parameters_of.empty() ? "" : ", ") + declare(list[i].text, Kind::Unknown);
+        }
+        const std::string body = lisp_text(form.parts.back());
+        scopes_.pop_back();
+        return line("fn " + ours + "(" + parameters_of + ") = " + body);
+    }
+    if (head == "let" && count == 3 && form.parts[1].is == Is::List) {
+        const std::vector<Node> &list = form.parts[1].parts;
+        const bool pairs = form.parts[1].text == "(";
+        for (std::size_t i = 0; i < list.size(); i += pairs ? 1 : 2) {
+            if (pairs && list[i].parts.size() != 2) throw Unsure{};
+            if (!pairs && i + 1 == list.size()) throw Unsure{};
+            lisp_statement(node(Is::List, "(",
+                                {node(Is::Name, "def"), pairs ? list[i].parts[0] : list[i],
+                                 pairs ? list[i].parts[1] : list[i + 1]}));
+        }
+        return lisp_statement(form.parts[2]);
+    }
+    const Written w = lisp(form);
+    if (w.kind == Kind::Number || w.kind == Kind::Vector) throw Unsure{};
+    shown_ = true;
+    line(w.text);
+}
+
+} // namespace fathom::lang::program
