@@ -382,7 +382,7 @@ struct Reader {
         add_row(sub, simplify_row(mesh.simplify));
         sub->add_flag("--parts", mesh.parts,
                       "each part of the scene as an object of its own: .glb, .obj and .3mf");
-        sub->add_flag("--json", mesh.json,
+        sub->add_flag("--json", mesh.solid.json,
                       "prove what can be proved of the mesh: one JSON document on standard output");
     }
 
@@ -391,7 +391,7 @@ struct Reader {
         add_solid(sub, measure.solid);
         for (const OptionRow &row : measure_rows(measure)) add_row(sub, row);
         add_row(sub, units_row(measure.solid, "to print numbers in it"));
-        sub->add_flag("--json", measure.json, "one JSON document on standard output");
+        sub->add_flag("--json", measure.solid.json, "one JSON document on standard output");
     }
 
     void add_slice() {
@@ -407,7 +407,7 @@ struct Reader {
             ->required();
         add_size(sub, slice.width, slice.height);
         add_row(sub, units_row(slice.solid, "which .svg and .dxf say"));
-        sub->add_flag("--json", slice.json,
+        sub->add_flag("--json", slice.solid.json,
                       "say what is proved of each slice: one JSON document on standard output");
     }
 
@@ -422,7 +422,7 @@ struct Reader {
         choice<bool>(sub, "--certify", volume.certify, {{"on", true}, {"off", false}},
                      "prove how far distances are off: on, or off for speed")
             ->type_name("WHETHER");
-        sub->add_flag("--json", volume.json,
+        sub->add_flag("--json", volume.solid.json,
                       "say where it lies and what is proved: one JSON document on standard output");
     }
 
@@ -547,11 +547,13 @@ std::string in_our_words(Reader &reader, const CLI::ParseError &error) {
             return fmt::format("{}: wants a number, not `{}`", rest.substr(0, equals),
                                rest.substr(equals + 3));
     }
-    if (!dynamic_cast<const CLI::ExtrasError *>(&error)) return said;
+    // Where something is missing, it may be what a misspelt option was to give.
+    const bool lacks = dynamic_cast<const CLI::RequiredError *>(&error) != nullptr;
+    if (!lacks && !dynamic_cast<const CLI::ExtrasError *>(&error)) return said;
     const std::vector<CLI::App *> chosen = reader.app.get_subcommands();
     CLI::App &app = chosen.empty() ? reader.app : *chosen.front();
     std::vector<std::string> left = app.remaining();
-    if (left.empty()) { // CLI11 lists them from the last
+    if (left.empty() && !lacks) { // CLI11 lists them from the last
         std::istringstream words(rest);
         for (std::string word; words >> word;) left.insert(left.begin(), word);
     }
@@ -566,6 +568,7 @@ std::string in_our_words(Reader &reader, const CLI::ParseError &error) {
         return word.size() > 1 && word[0] == '-' &&
                std::ranges::find(names, name_of(word)) == names.end();
     });
+    if (unknown == left.end() && lacks) return said;
     if (unknown == left.end()) return fmt::format("`{}` is a word too many", left.front());
     const std::string word = name_of(*unknown);
     const std::string near = nearest_name(word, names);

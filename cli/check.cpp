@@ -121,7 +121,10 @@ Exit say(const CheckCommand &command, const SceneArguments &scene, const v1::Com
          Terminal &terminal) {
     if (!command.json || is_about_no_text(result)) {
         const Exit exit = report(result, terminal);
-        if (exit != done) return exit;
+        if (exit != done) {
+            if (command.json) terminal.put(v1::verdict_json(result));
+            return exit;
+        }
         if (command.explain) explain(*result.scene, terminal);
         if (!command.json)
             terminal.say(verdict_line(result, scene.file, are_values_given(command)));

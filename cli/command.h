@@ -127,6 +127,7 @@ struct FarmCommand {
 struct SolidArguments {
     SceneArguments scene;
     bool several = false; // it is one of several scenes: documents name it
+    bool json = false;    // a document on standard output, also where there is none to make
     bool flat = false;    // its flat shapes, as solids about z = 0
     std::string part;     // of the scene, alone; empty: all of it
     double tolerance = 0; // the side of the cells; 0: by resolution
@@ -147,7 +148,6 @@ struct MeshCommand {
     std::string out;     // `{}` stands for the scene's name
     double simplify = 0; // a distance; 0: no triangles are left out
     bool parts = false;  // each an object of its own
-    bool json = false;   // the certificate
 };
 // `fathom measure`.
 struct MeasureCommand {
@@ -155,7 +155,6 @@ struct MeasureCommand {
     std::optional<double> density;
     bool parts = false;                                       // each part, too
     std::vector<std::pair<std::string, std::string>> between; // parts, whose clearance is wanted
-    bool json = false;
 };
 // `fathom slice`.
 struct SliceCommand {
@@ -164,7 +163,6 @@ struct SliceCommand {
     char axis = 0;                   // x, y or z; 0: none was said
     std::vector<double> heights;     // along it
     int width = 1024, height = 1024; // of a PNG
-    bool json = false;
 };
 // `fathom volume`.
 struct VolumeCommand {
@@ -172,7 +170,7 @@ struct VolumeCommand {
     std::string out;
     double voxel = 0; // its side; 0: by resolution
     double band = 3;  // voxels to each side of the surface, of a .vdb
-    bool certify = true, json = false;
+    bool certify = true;
 };
 // `fathom eval`.
 struct EvalCommand {

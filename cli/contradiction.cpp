@@ -183,7 +183,7 @@ std::string of(const MeshCommand &mesh, const Given &given) {
     if (mesh.out == "-" && mesh.files.size() > 1)
         return "standard output takes one mesh: name files, as -o '{}.stl'";
     if (std::string why = of_frames(mesh.solid, mesh.out, given); !why.empty()) return why;
-    if (mesh.json && mesh.out == "-")
+    if (mesh.solid.json && mesh.out == "-")
         return "--json and the mesh cannot both go to standard output: name a file by -o";
     if (mesh.parts && !mesh.solid.part.empty())
         return "--part writes one part alone, --parts all of them: give one of them";
@@ -204,7 +204,7 @@ std::string of(const SliceCommand &slice, const Given &given) {
         return "slices lie across one axis: give one of --x, --y and --z, as --z 0..10:0.2";
     if (slice.axis == 0 && slice.solid.scene.file == "-")
         return "flat shapes are read twice, and standard input can be read once: name the scene";
-    if (slice.json && slice.out == "-")
+    if (slice.solid.json && slice.out == "-")
         return "--json and the slice cannot both go to standard output: name a file by -o";
     if (given("--size") && suffix_of(slice.out) != ".png")
         return "--size is of a PNG: -o OUT.png writes one";
@@ -222,7 +222,7 @@ std::string of(const VolumeCommand &volume, const Given &given) {
     for (const char *option : {"--band", "--certify", "--part"})
         if (given("--field") && given(option))
             return fmt::format("{} is of distances, and --field writes others", option);
-    if (volume.json && volume.out == "-")
+    if (volume.solid.json && volume.out == "-")
         return "--json and the volume cannot both go to standard output: name a file by -o";
     return "";
 }

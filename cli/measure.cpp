@@ -245,7 +245,7 @@ Exit run(const MeasureCommand &command, Terminal &terminal) {
         if (subject.line > 0 && subject.of.status == v1::MeshStatus::Empty) continue;
         if (!subject.of) {
             terminal.finish_progress();
-            return say_refusal(file, fmt::format("measures of `{}`", subject.name),
+            return say_refusal(command.solid, file, fmt::format("measures of `{}`", subject.name),
                                subject.of.status, subject.of.message, terminal);
         }
     }
@@ -258,12 +258,12 @@ Exit run(const MeasureCommand &command, Terminal &terminal) {
         const v1::Clearance &c = clearances.back().of;
         if (!c) {
             terminal.finish_progress();
-            return say_refusal(file, "clearance", c.status, c.message, terminal);
+            return say_refusal(command.solid, file, "clearance", c.status, c.message, terminal);
         }
     }
     terminal.finish_progress();
 
-    if (command.json) {
+    if (command.solid.json) {
         Json json = json_of(subjects[0].of, command);
         json["unit"] = command.solid.units.empty() ? Json() : Json(command.solid.units);
         if (command.parts) json["parts"] = Json::array();

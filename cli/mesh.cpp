@@ -219,7 +219,7 @@ Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &f
     if (format == v1::MeshFormat::Obj && overwrites(frame.files, library_of(frame.out), terminal))
         return usage_error;
     v1::MeshOptions options = options_of(frame.arguments);
-    options.certify = command.json;
+    options.certify = command.solid.json;
     options.colors = format != v1::MeshFormat::Stl;
     options.simplify = command.simplify;
     options.progress = frame.progress;
@@ -234,7 +234,8 @@ Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &f
                                         : std::tie(objects.whole.status, objects.whole.message);
     if (status != v1::MeshStatus::Done) {
         terminal.finish_progress();
-        return say_refusal(frame.number ? frame.out : file, "mesh", status, message, terminal);
+        return say_refusal(command.solid, frame.number ? frame.out : file, "mesh", status, message,
+                           terminal);
     }
     const std::string name = command.solid.part.empty() ? name_of(file) : command.solid.part;
     terminal.finish_progress();
@@ -255,7 +256,7 @@ Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &f
         for (const v1::MeshObject &object : objects.all)
             say_means(*object.mesh, frame.out, terminal);
     const Exit exit = write_objects(objects, command, frame.out, format, name, terminal);
-    if (exit == done && command.json)
+    if (exit == done && command.solid.json)
         terminal.put(
             frame_json(frame,
                        (command.parts ? json_of(objects.parts) : json_of(objects.whole)).dump()) +

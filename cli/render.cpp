@@ -6,6 +6,8 @@
 #include "cli/progress.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fmt/format.h>
 #include <sys/statvfs.h>
 
@@ -62,6 +64,14 @@ std::optional<v1::Region> region_of(const RenderCommand &command, Terminal &term
     return std::nullopt;
 }
 
+// A number of bytes, as people read it.
+std::string in_bytes(double bytes) {
+    constexpr std::array<const char *, 5> units = {"bytes", "kB", "MB", "GB", "TB"};
+    std::size_t unit = 0;
+    for (; unit + 1 < units.size() && bytes >= 999.5; ++unit) bytes /= 1000;
+    return fmt::format("{:.3g} {}", std::floor(bytes * 100) / 100, units[unit]);
+}
+
 // Room for the files is estimated: sums as they are, pictures at a fifth of three bytes a pixel,
 // which most pictures of the gallery do not reach. False, with both numbers, where there is less.
 bool has_room(const Delivery &delivery, const RenderCommand &command, const v1::Region &region,
@@ -70,14 +80,15 @@ bool has_room(const Delivery &delivery, const RenderCommand &command, const v1::
     std::filesystem::path folder = std::filesystem::path(command.out).parent_path();
     struct statvfs disk {};
     if (::statvfs(folder.empty() ? "." : folder.c_str(), &disk) != 0) return true;
+    if (disk.f_blocks == 0) return true; // as `/proc`, which takes no files: the write says so
     const double pixels = static_cast<double>(region.width) * region.height,
                  wanted = static_cast<double>(files) * pixels * (delivery.wants_sums() ? 24 : 0.6),
                  free = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize);
     if (wanted <= free) return true;
-    terminal.say(
-        fmt::format("fathom: {} files of {}x{} take {:.1f} GB about, and there are {:.1f} GB "
-                    "free",
-                    files, region.width, region.height, wanted * 1e-9, free * 1e-9));
+    const std::string what = files == 1 ? "a file" : fmt::format("{} files", files);
+    terminal.say(fmt::format("fathom: {} of {}x{} {} about {}, and {} is free", what, region.width,
+                             region.height, files == 1 ? "takes" : "take", in_bytes(wanted),
+                             in_bytes(free)));
     return false;
 }
 

@@ -120,8 +120,8 @@ Exit make(const SliceCommand &command, const SolidFrame &frame, Terminal &termin
     stop_if_interrupted(terminal); // nothing is written
     terminal.finish_progress();
     if (!cut)
-        return say_refusal(frame.number ? frame.out : command.solid.scene.file, "slices",
-                           cut.status, cut.message, terminal);
+        return say_refusal(command.solid, frame.number ? frame.out : command.solid.scene.file,
+                           "slices", cut.status, cut.message, terminal);
     say_undecided(cut, command, frame.out, terminal);
     Json json{{"axis", std::string(1, command.axis)}, {"side", cut.side}};
     json["slices"] = Json::array();
@@ -138,7 +138,7 @@ Exit make(const SliceCommand &command, const SolidFrame &frame, Terminal &termin
     }
     if (empty == cut.slices.size()) say_empty(cut, command, frame.out, terminal);
     json["rests_on"] = cut.rests_on;
-    if (command.json) terminal.put(frame_json(frame, json.dump()) + "\n");
+    if (command.solid.json) terminal.put(frame_json(frame, json.dump()) + "\n");
     return done;
 }
 

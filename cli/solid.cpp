@@ -84,6 +84,7 @@ Solid open_solid(const SolidArguments &arguments, Terminal &terminal, bool again
         std::erase_if(result.diagnostics,
                       [](const v1::Diagnostic &d) { return d.code == "nothing-framed"; });
     solid.exit = again && result ? done : report(result, terminal);
+    if (arguments.json && !result) terminal.put(v1::verdict_json(result));
     if (solid.exit != done) return solid;
     solid.exit = usage_error; // unless all is well
     if (!in_proved_time(result.scene->facts(), arguments.time, arguments.time, terminal))
@@ -170,11 +171,15 @@ v1::MeshOptions options_of(const SolidArguments &arguments) {
     return options;
 }
 
-Exit say_refusal(const std::string &file, const std::string &what, v1::MeshStatus status,
-                 const std::string &message, Terminal &terminal) {
+Exit say_refusal(const SolidArguments &solid, const std::string &file, const std::string &what,
+                 v1::MeshStatus status, const std::string &message, Terminal &terminal) {
     const bool endless = status == v1::MeshStatus::Endless;
     terminal.say(fmt::format("fathom: {}: no {}: {}{}", file, what, message,
                              endless ? "; here `--bounds X,Y,Z,X,Y,Z` does it" : ""));
+    if (solid.json)
+        terminal.put(
+            nlohmann::ordered_json{{"ok", false}, {"status", nullptr}, {"why", message}}.dump() +
+            "\n");
     return exit_of(status);
 }
 

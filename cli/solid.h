@@ -53,7 +53,7 @@ void stop_if_interrupted(Terminal &terminal);
 v1::MeshOptions options_of(const SolidArguments &arguments);
 
 // How a command ends that could not do its work, which is said.
-Exit say_refusal(const std::string &file, const std::string &what, v1::MeshStatus status,
-                 const std::string &message, Terminal &terminal);
+Exit say_refusal(const SolidArguments &solid, const std::string &file, const std::string &what,
+                 v1::MeshStatus status, const std::string &message, Terminal &terminal);
 
 } // namespace fathom::cli

@@ -101,8 +101,8 @@ Exit make(const VolumeCommand &command, const SolidFrame &frame, Terminal &termi
         stop_if_interrupted(terminal); // nothing is written
         if (volumes.back()) continue;
         terminal.finish_progress();
-        return say_refusal(frame.number ? frame.out : command.solid.scene.file, "volume",
-                           volumes.back().status, volumes.back().message, terminal);
+        return say_refusal(command.solid, frame.number ? frame.out : command.solid.scene.file,
+                           "volume", volumes.back().status, volumes.back().message, terminal);
     }
     terminal.finish_progress();
     const v1::Volume &volume = volumes[0];
@@ -119,7 +119,8 @@ Exit make(const VolumeCommand &command, const SolidFrame &frame, Terminal &termi
         return device_error;
     }
     const Exit exit = write_result(frame.out, bytes, terminal);
-    if (exit == done && command.json) terminal.put(frame_json(frame, json_of(volumes, command)));
+    if (exit == done && command.solid.json)
+        terminal.put(frame_json(frame, json_of(volumes, command)));
     return exit;
 }
 

@@ -155,7 +155,7 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
     effort.evaluations -= std::min(effort.evaluations, checked.evaluations);
     out.evaluations += checked.evaluations;
     if (effort.stop.now()) return cancel(out);
-    if (checked.over_limit) return;
+    if (checked.over_limit || options.types_alone) return;
     // What checked is proved also where other statements did not: all errors in one run.
     enter(options, Phase::Prove);
     proof::Options proof_options;
@@ -221,7 +221,8 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
     Compilation again;
     again.sources = out.sources, again.diagnostics = out.diagnostics;
     run_phases(out, text, options, effort, {});
-    if (out.cancelled || !out.diagnostics.has_errors() || (options.strict_proof && !options.times))
+    if (out.cancelled || options.types_alone || !out.diagnostics.has_errors() ||
+        (options.strict_proof && !options.times))
         return;
     const std::vector<Span> params = unproved_ranges(out.scene, out.diagnostics, effort.asked);
     if (params.empty()) return;

@@ -52,6 +52,9 @@ struct CompileOptions {
     std::optional<std::string> unsaved{};
     bool parts =
         false; // lower so that hits tell their parts (ir::lower_with_parts): for the viewer alone
+    // Ends behind the check, for who wants the names and their types at once: nothing is proved, and
+    // there is no scene.
+    bool types_alone = false;
     // What earlier compilations found of fields, for who compiles after each edit; it outlives them.
     // It changes how long a compilation takes and nothing else. None: one for each compilation.
     proof::BoundCache *bounds = nullptr;

@@ -89,6 +89,7 @@ std::uint32_t Lexer::hash(std::uint32_t begin, std::uint32_t end) {
         d.note(fmt::format("here are {}", digits.size()));
     else
         d.note("hex digits are 0 to 9 and a to f");
+    d.help("write it as `#f80` or `#ff8800`");
     return end;
 }
 

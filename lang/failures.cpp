@@ -2,6 +2,7 @@
 // what was found, and the bracket that it concerns.
 #include "lang/builder.h"
 
+#include <array>
 #include <utility>
 
 namespace fathom::lang {
@@ -182,7 +183,15 @@ void Builder::generic_failure(Wanted wanted, Index at) {
             const std::uint32_t end = token(at - 1).end;
             const bool shapes = found == Tok::Name && kind(at - 1) == Tok::Close &&
                                 kind(at + 1) == Tok::Open && !token(at).first_on_line;
-            if (shapes) // `sphere(1) box(1)`
+            constexpr std::array<std::string_view, 7> joining = {
+                "union",        "intersection",      "difference",         "smooth_union",
+                "smooth_blend", "smooth_difference", "smooth_intersection"};
+            const Index open = shapes ? match(at - 1) : 0;
+            if (open > 0 && open < at && is_one_of(text(open - 1), joining)) // `union() a, b`
+                d.help("the shapes that are joined stand in braces: " +
+                       in_code(std::string(text(token(open - 1).begin, token(at - 1).end)) +
+                               " { … }"));
+            else if (shapes) // `sphere(1) box(1)`
                 d.help("an operator is missing: `a | b` unites shapes, `a - b` cuts b out of a, "
                        "`a & b` is what both have in common");
             else

@@ -409,12 +409,18 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
         report(Code::BadCharacter, begin, end, "the language does not use `\\`")
             .help("a function without a name is written `p => …`");
     } else if (text[0] == '$') {
-        Diagnostic &d =
-            report(Code::BadCharacter, begin, end, "the language does not use `$`")
-                .note("names are plain words; smoothness needs no `$fn`, a distance field has no "
-                      "facets");
         const std::optional<Span> all = assignment_from(begin, end);
-        if (all && !makes_prism(*all)) d.help("leave it away", {{*all, ""}});
+        const Faces faces = all ? faces_of(*all) : Faces::None;
+        Diagnostic &d = report(Code::BadCharacter, begin, end, "the language does not use `$`");
+        if (faces == Faces::HandedOn)
+            d.note("all is round here: what few sides make of a cylinder or a circle is lost")
+                .help("leave it away; where sides are meant, write `prism(6, radius, height)` or "
+                      "`regular_polygon(6, radius)` in its place",
+                      {{*all, ""}});
+        else
+            d.note("names are plain words; smoothness needs no `$fn`, a distance field has no "
+                   "facets");
+        if (all && faces == Faces::None) d.help("leave it away", {{*all, ""}});
     } else if (text[0] == '\'') {
         report(Code::BadCharacter, begin, end, "the language does not use `'`")
             .help("a string stands in double quotes, a comment begins with `//`");

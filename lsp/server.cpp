@@ -33,6 +33,17 @@ Json at_path(const Json &json, std::initializer_list<const char *> path) {
     return *at;
 }
 
+// What the parameters of a request lack.
+std::string in_words(const std::string &method, const Json::exception &error) {
+    constexpr int no_member = 403;
+    const std::string_view what = error.what();
+    const std::size_t begin = what.find('\''), end = what.rfind('\'');
+    if (error.id != no_member || begin == what.npos || end <= begin)
+        return "a parameter of " + method + " is of another type than the protocol has it";
+    return "the parameters of " + method + " have no `" +
+           std::string(what.substr(begin + 1, end - begin - 1)) + "`";
+}
+
 std::string failure(const Json &id, int code, const std::string &why) {
     return written({{"jsonrpc", "2.0"}, {"id", id}, {"error", {{"code", code}, {"message", why}}}});
 }
@@ -84,7 +95,7 @@ std::vector<std::string> Server::handle(const std::string &message) {
     } catch (const UnknownDocument &unknown) {
         fail(invalid_params, unknown.what());
     } catch (const Json::exception &error) { // a field that is missing or of another type
-        fail(invalid_params, error.what());
+        fail(invalid_params, in_words(method, error));
     } catch (const std::exception &error) {
         fail(internal_error, error.what());
     }

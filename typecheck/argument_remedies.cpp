@@ -358,7 +358,8 @@ class Remedy {
                 say(fmt::format("a slab lies round the origin: `slab(1, axis: {})`, moved by "
                                 "`.translate`",
                                 static_cast<char>(name[0] - 'x' + 'X')));
-        } else if (std::ranges::find(needless, name) != needless.end() && !has(formals_, "at")) {
+        } else if (std::ranges::find(needless, name) != needless.end() && !has(formals_, "at") &&
+                   !has(formals_, "max_steps")) {
             say(fmt::format("shapes are centred and smooth: leave `{}` away", name));
             leave(i);
         } else if (const auto rounded = rounded_form(function_, name); !rounded.empty()) {

@@ -362,7 +362,12 @@ std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_vi
         while (end < args.size() && !args[end].name && !args[end].trailing &&
                is_scalar(ev, args[end].value))
             ++end;
-        if (!formals[i].is_place || end - first < 2) continue;
+        // `repeat(2, 3, 4)`: the third number stands where a function may
+        const bool one_vector =
+            formals[i].is_place ||
+            (end - first == formals[i].vector_size && i + (end - first) <= formals.size() &&
+             formals[i + (end - first) - 1].takes_function);
+        if (!one_vector || end - first < 2) continue;
         const Fix fix =
             remedy_of_row(args.subspan(first, end - first), formals[i].vector_size, true);
         report(ev, Code::TypeMismatch, join(args[first].span, args[end - 1].span),
@@ -407,6 +412,7 @@ std::span<const Formal> formals_of(Interpreter &ev, const Closure &c) {
         formal.is_angle = p.type && p.type->in_radians;
         if (p.type && p.type->named == lang::TypeName::Vec2) formal.vector_size = 2;
         if (p.type && p.type->named == lang::TypeName::Vec3) formal.vector_size = 3;
+        formal.takes_function = p.type && p.type->kind == lang::TypeExpr::Kind::Function;
         formal.is_place = c.library && formal.vector_size > 0 && is_place(p.name.text);
         if (p.default_value) {
             const auto *name = std::get_if<lang::Name>(&c.ast->exprs[*p.default_value].kind);

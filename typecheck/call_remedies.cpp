@@ -375,14 +375,39 @@ std::string names_left(std::span<const Formal> formals, std::span<const Given> g
     return fmt::format(": {}", fmt::join(names, " or "));
 }
 
+// Where the text ends that stands above a line which has nothing before its `-`; none where a comment
+// or nothing stands there.
+static std::optional<std::uint32_t> end_of_line_above(std::string_view before) {
+    const std::size_t line = before.find_last_not_of(" \t");
+    if (line == before.npos || before[line] != '\n') return std::nullopt;
+    const std::size_t last = before.find_last_not_of(" \t\r\n");
+    if (last == before.npos || (before[last] != ')' && before[last] != '}')) return std::nullopt;
+    const std::size_t begin = before.rfind('\n', last);
+    const std::string_view above = before.substr(begin == before.npos ? 0 : begin + 1,
+                                                 last - (begin == before.npos ? 0 : begin));
+    if (above.find("//") != above.npos || above.find('"') != above.npos) return std::nullopt;
+    return static_cast<std::uint32_t>(last + 1);
+}
+
 void report_negated_shape(Interpreter &ev, Span place, Span operand) {
     Diagnostic &d = report(ev, Code::LineContinues, place, "a shape cannot be negated");
     const std::string_view before = text(ev.sources, {place.source, 0, place.begin});
     const std::size_t last = before.find_last_not_of(" \t");
-    if (last == before.npos || std::string_view("(,[=").find(before[last]) == before.npos)
+    if (last != before.npos && std::string_view("-|&").find(before[last]) != before.npos) {
+        d.help(before[last] == '-' ? "one `-` cuts the shape behind it out"
+                                   : "`a - b` cuts b out of a: leave the sign before the `-` away",
+               {before[last] == '-'
+                    ? Edit{{place.source, place.begin, operand.begin}, ""}
+                    : Edit{{place.source, static_cast<std::uint32_t>(last), place.begin}, ""}});
+    } else if (last == before.npos || std::string_view("(,[=").find(before[last]) == before.npos) {
+        std::vector<Edit> edits;
+        if (const auto above = end_of_line_above(before))
+            edits = {{{place.source, *above, *above}, " -"},
+                     {{place.source, place.begin, operand.begin}, ""}};
         d.help("to cut it out of the shape on the line above, move the `-` to the end of that "
-               "line; the space around a shape is `complement(s)`");
-    else // `max(a, -b)`
+               "line; the space around a shape is `complement(s)`",
+               std::move(edits));
+    } else // `max(a, -b)`
         d.help("b is cut out of a by `a - b`; the space around a shape is `complement(s)`",
                {{{place.source, place.begin, operand.begin}, "complement("},
                 {{place.source, place.end, place.end}, ")"}});

@@ -242,6 +242,7 @@ Value call_value(Interpreter &ev, const Value &callee, std::string_view name,
     if (callee.kind == ValueKind::List ||
         (is_numeric(callee) && ir::is_vector(numeric_type(ev, callee))))
         d.help("an element is `l[i]`");
+    if (help_with_hidden(ev, d, name, callee_span)) return poison();
     if (is_scalar(ev, callee))
         d.help("a product is written with `*`",
                {{{callee_span.source, callee_span.end, callee_span.end}, " * "}});

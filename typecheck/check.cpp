@@ -178,7 +178,13 @@ void demand_ranges(Interpreter &ev) {
                fmt::format(
                    "`{}` shapes the scene, so it needs a range: the proof holds for all its values",
                    p.name))
-            .help(fmt::format("write `param {} = … in 0.5..2.0`", p.name));
+            .help(
+                ir::is_vector(p.type)
+                    ? fmt::format("write `param {0} = … in -2..2`, one range for all its parts, or "
+                                  "a vector at each end, `in {1}..{2}`",
+                                  p.name, p.type == ir::Type::Vec2 ? "[0, 0]" : "[0, 0, 0]",
+                                  p.type == ir::Type::Vec2 ? "[1, 2]" : "[1, 1, 2]")
+                    : fmt::format("write `param {} = … in 0.5..2.0`", p.name));
     }
 }
 

@@ -204,6 +204,11 @@ static std::optional<Value> as_type(Interpreter &ev, const Value &v, const lang:
     case lang::TypeExpr::Kind::Name: return as_named(ev, v, type);
     case lang::TypeExpr::Kind::Function: {
         if (is_function(v)) return v;
+        const lang::TypeExpr &result = type.items.back();
+        const bool of_shapes =
+            result.kind == lang::TypeExpr::Kind::Name &&
+            (result.named == lang::TypeName::Shape || result.named == lang::TypeName::Shape2);
+        if (of_shapes) return std::nullopt;
         // a constant stands for a field
         Value constant = vector_of_list(ev, v);
         if (!is_numeric(constant)) return std::nullopt;
@@ -293,6 +298,9 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
     if (v.kind == ValueKind::Shape) help_with_shape(d, what.of);
     if (!d.fix && is_function(v)) help_with_uncalled(ev, d, v, place);
     if (type.kind == lang::TypeExpr::Kind::Name) help_with_value(ev, d, v, type.named, place);
+    if (what.name == "count" && v.kind == ValueKind::Vec && d.fix && d.fix->edits.size() == 1 &&
+        d.fix->edits[0].replacement == ", 0")
+        d.fix->edits[0].replacement = ", 1"; // a count begins there
     if (what.of == "rotate" && what.name == "angle" && v.kind == ValueKind::Vec)
         d.help("the angle comes first: `.rotate(angle, axis)`; `.rotate_euler([x, y, z])` turns "
                "about all three axes");

@@ -56,9 +56,11 @@ static std::optional<Value> numbers_at(Interpreter &ev, const Value &field,
             value = make_vector(ev, items, static_cast<int>(items.size()), place);
     }
     if (!is_numeric(value)) {
-        report(ev, Code::TypeMismatch, place,
-               fmt::format("{} wants a function that gives a {}, this one gives {}", what, wanted,
-                           describe(ev, value)));
+        Diagnostic &d = report(ev, Code::TypeMismatch, place,
+                               fmt::format("{} wants a function that gives a {}, this one gives {}",
+                                           what, wanted, describe(ev, value)));
+        if (value.kind == ValueKind::Unit || value.kind == ValueKind::None)
+            d.help("the last expression is the value; an `if` that gives one has an `else`");
         return std::nullopt;
     }
     if (!finite_number(ev, value, place, what)) return std::nullopt;
@@ -83,6 +85,8 @@ std::optional<ir::NodeId> apply_field(Interpreter &ev, const Value &field,
                                        what, ir::type_name(result), describe(ev, value)));
     if (result == Type::Float && type == Type::Bool)
         help_with_condition(ev, d, place);
+    else if (result == Type::Vec3 && type == Type::Vec4)
+        d.help("of four numbers, as an `image` has them, the first three are `.rgb` or `.xyz`");
     else
         d.help(result == Type::Float && ir::is_vector(type)
                    ? "one number of a vector is its length, `length(p) - 1`, or a part, `p.y`"

@@ -41,6 +41,7 @@ struct Formal {
     bool is_angle = false;   // in radians, so that a plain literal beyond a turn looks like degrees
     std::uint8_t vector_size = 0; // of a vec2 or a vec3
     bool is_place = false;        // a point or a direction, which one number is not
+    bool takes_function = false;  // by its type
     bool no_limit = false;        // its default is `inf`, which so has a meaning
     Span declared;
 };

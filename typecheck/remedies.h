@@ -49,6 +49,8 @@ std::vector<Edit> part_of_shape(Interpreter &ev, const File &ast, const lang::Me
                                 std::string &made_of);
 // True, and reported, where a method is another library's and its name a function here:
 // `s.material("gold")`, `random.uniform(0, 1)`.
+// Where a value of the file hides the library's function that is called: another name for the value.
+bool help_with_hidden(Interpreter &ev, Diagnostic &d, std::string_view name, Span callee);
 bool is_foreign_method(Interpreter &ev, const Value &object, const File &ast,
                        const lang::Member &member, const lang::Call &call, Span place);
 // For `l.push(x)` in a loop, `l.forEach(f)`, `l.sum()`: what does the same. Empty where that is not

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace fathom::typecheck {
 
@@ -111,6 +112,50 @@ std::vector<Edit> renamed_from(const Interpreter &ev, const File &ast, const lan
     }
     if (edits.size() > most_edits) edits.clear();
     return edits;
+}
+
+bool help_with_hidden(Interpreter &ev, Diagnostic &d, std::string_view name, Span callee) {
+    if (name.empty() || !callee.source) return false;
+    const File *file = nullptr;
+    for (const File &one : ev.files)
+        if (one.source == callee.source) file = &one;
+    constexpr std::size_t most_reports = 100; // the whole file is looked at for each
+    if (!file || ev.diagnostics.items().size() > most_reports) return false;
+    const Symbol place = intern(ev, std::string(name));
+    if (!is_builtin(place) && !ev.prelude_items.contains(place) &&
+        !slot_in_module(ev, ev.prelude_frame, place))
+        return false;
+    // The declaration at the top, and each use that is no call, is named otherwise.
+    const std::string other = std::string(name) + "_value";
+    std::vector<Edit> edits;
+    for (const lang::Stmt &s : file->blocks[file->root].stmts) {
+        const lang::Identifier *declared = nullptr;
+        if (const auto *let = std::get_if<lang::Let>(&s.kind)) declared = &let->name;
+        if (const auto *param = std::get_if<lang::Param>(&s.kind)) declared = &param->name;
+        if (declared && declared->text == name) edits.push_back({declared->span, other});
+        if (declared && declared->text == other) return false;
+    }
+    if (edits.size() != 1) return false;
+    std::set<std::uint32_t> called;
+    for (const lang::Expr &e : file->exprs)
+        if (const auto *call = std::get_if<lang::Call>(&e.kind)) called.insert(call->callee.index);
+    for (std::uint32_t i = 0; i < file->exprs.size(); ++i) {
+        const lang::Expr &e = file->exprs[lang::ExprId{i}];
+        const auto *use = std::get_if<lang::Name>(&e.kind);
+        if (use && use->text == name && !called.contains(i)) edits.push_back({e.span, other});
+    }
+    for (const lang::Function &f : file->functions) // an inner name of the same spelling
+        for (const lang::Parameter &p : f.parameters)
+            if (p.name.text == name) return false;
+    for (const lang::Block &b : file->blocks)
+        for (const lang::Stmt &s : b.stmts)
+            if (const auto *let = std::get_if<lang::Let>(&s.kind);
+                let && let->name.text == name && let->name.span.begin != edits[0].span.begin)
+                return false;
+    d.help(
+        fmt::format("the name hides the library's function: give the value another, `{}`", other),
+        std::move(edits));
+    return true;
 }
 
 } // namespace fathom::typecheck

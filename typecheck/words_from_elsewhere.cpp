@@ -166,8 +166,9 @@ constexpr Row ways[] = {
     {"one shape turns into another by `blend(a, b, t)`", "morph"},
     {"the library's names stand alone, as in `sphere(1)`", "sdf"},
     {"shapes flow together in `smooth_union(k) { … }`", "k smooth"},
-    {"there is no convex hull; `smooth_union(r) { … }` joins shapes, `round_cone` and `capsule` "
-     "join two balls",
+    {"there is no convex hull: of two balls it is a `capsule` or a `round_cone`, of equal balls in "
+     "the corners of a box a `rounded_box`, of flat faces an intersection of planes; other shapes "
+     "are joined by `smooth_union(r) { … }`",
      "hull"},
     {"there is no Minkowski sum; with a ball it is `.offset(r)`", "minkowski"},
     {"a convex solid is an intersection of planes: `plane(normal, offset) & …`", "polyhedron"},

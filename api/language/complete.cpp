@@ -7,6 +7,7 @@
 #include "lang/vocabulary.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fmt/format.h>
 #include <set>
@@ -19,13 +20,51 @@ using lang::Tok;
 using Item = v1::CompletionItem;
 using Items = std::vector<Item>;
 
-// What may stand before a dot, as far as methods care.
-enum class Kind { Unknown, Shape, Number, List, Module };
+// What may stand before a dot, as far as methods care. A vector is of two, three or four numbers; of
+// a `Number` it is not known whether it is one.
+enum class Kind { Unknown, Shape, Number, Float, Vec2, Vec3, Vec4, List, Module };
+
+Kind vector_of(std::size_t numbers) {
+    switch (numbers) {
+    case 2: return Kind::Vec2;
+    case 3: return Kind::Vec3;
+    case 4: return Kind::Vec4;
+    default: return Kind::List;
+    }
+}
+
+// The letters of a vector's parts; none of what is surely none.
+std::string_view parts_of(Kind kind) {
+    switch (kind) {
+    case Kind::Vec2: return "xy";
+    case Kind::Vec3: return "xyz";
+    case Kind::Unknown:
+    case Kind::Number:
+    case Kind::Vec4: return "xyzw";
+    case Kind::Shape:
+    case Kind::Float:
+    case Kind::List:
+    case Kind::Module: break;
+    }
+    return "";
+}
+
+// Whether a function whose first parameter is of the one kind takes what is of the other.
+bool takes(Kind first, Kind given) {
+    const auto is_number = [](Kind kind) { return kind == Kind::Float || !parts_of(kind).empty(); };
+    if (first == Kind::Unknown || given == Kind::Unknown || first == given) return true;
+    return is_number(first) && is_number(given) && (first == Kind::Number || given == Kind::Number);
+}
 
 Kind kind_of_type(std::string_view type) {
     if (type.find("shape") != type.npos) return Kind::Shape;
     if (type.starts_with("list") || type.starts_with('[')) return Kind::List;
-    for (std::string_view number : {"float", "int", "vec", "mat", "color", "angle", "_field"})
+    if (type.starts_with("vec2")) return Kind::Vec2;
+    if (type.starts_with("vec3")) return Kind::Vec3;
+    if (type.starts_with("vec4") || type.starts_with("color")) return Kind::Vec4;
+    for (std::string_view number : {"float", "int", "angle"})
+        if (type.starts_with(number)) return Kind::Float;
+    for (std::string_view number : {"mat", "_field"})
         if (type.starts_with(number)) return Kind::Number;
     return Kind::Unknown;
 }
@@ -77,21 +116,28 @@ Place place_of(Workspace &workspace, Document &document, std::size_t offset, boo
 // Of a name of the text, as the last compilation knew it: completion is asked for at every letter,
 // and waits for another only where the name was not there then. Nothing where it has none.
 const std::string *type_of_name(const Place &place, const std::string &name) {
-    const auto &types = place.document.types;
-    if (!types || (!types->contains(name) && !place.document.compiled))
-        (void)compiled(place.workspace, place.document);
+    const auto *types = &types_of(place.workspace, place.document, false);
+    if (!types->contains(name)) types = &types_of(place.workspace, place.document, true);
     const auto found = types->find(name);
     return found == types->end() ? nullptr : &found->second;
 }
 
-Kind kind_of_parameter(const lang::Ast &ast, const Declaration &declared) {
+// What a function of the point is given to, as the only argument that is one.
+constexpr std::array<std::string_view, 5> of_the_point = {"implicit", "displace", "distort",
+                                                          "paint", "estimate"};
+
+Kind kind_of_parameter(const Place &place, const Declaration &declared) {
+    const lang::Ast &ast = place.read.syntax.ast;
     for (const lang::Function &function : ast.functions)
         for (const lang::Parameter &parameter : function.parameters)
             if (parameter.name.span == declared.at && parameter.type)
                 return parameter.type->kind == lang::TypeExpr::Kind::List
                            ? Kind::List
                            : kind_of_type(parameter.type->name);
-    return Kind::Unknown;
+    const auto call = call_around(place.read.syntax, declared.at.begin);
+    return call && std::ranges::find(of_the_point, call->name) != of_the_point.end()
+               ? Kind::Vec3
+               : Kind::Unknown;
 }
 
 constexpr int most_names = 8; // that stand for each other
@@ -111,8 +157,7 @@ Kind kind_of_name(const Place &place, const std::string &name, int depth) {
             nearest = &declared;
     }
     if (nearest && nearest->by == DeclaredBy::Import) return Kind::Module;
-    if (nearest && nearest->by == DeclaredBy::Parameter)
-        return kind_of_parameter(place.read.syntax.ast, *nearest);
+    if (nearest && nearest->by == DeclaredBy::Parameter) return kind_of_parameter(place, *nearest);
     if (nearest && nearest->top_level)
         if (const std::string *type = type_of_name(place, name)) return kind_of_type(*type);
     if (nearest && !nearest->top_level && nearest->value && depth < most_names) {
@@ -122,6 +167,14 @@ Kind kind_of_name(const Place &place, const std::string &name, int depth) {
         return kind_before(place, end, depth + 1);
     }
     if (nearest) return Kind::Unknown;
+    for (std::size_t i = place.before; i-- > 1;) { // in a text that is no tree yet
+        if (place.tokens()[i].kind != Tok::FatArrow || place.text(place.tokens()[i - 1]) != name)
+            continue;
+        const auto call = call_around(place.read.syntax, place.tokens()[i - 1].begin);
+        if (call && std::ranges::find(of_the_point, call->name) != of_the_point.end())
+            return Kind::Vec3;
+        break;
+    }
     if (const Constant *constant = constant_named(place.workspace, name))
         return kind_of_type(constant->type);
     return Kind::Unknown;
@@ -131,19 +184,24 @@ Kind kind_of_name(const Place &place, const std::string &name, int depth) {
 Kind kind_before(const Place &place, std::size_t end, int depth) {
     if (end == 0) return Kind::Unknown;
     const lang::Token &last = place.tokens()[end - 1];
-    if (last.kind == Tok::Number) return Kind::Number;
+    if (last.kind == Tok::Number) return Kind::Float;
     if (last.kind == Tok::Name) return kind_of_name(place, place.text(last), depth);
     const std::string sign = place.text(last);
-    if (sign == "]") return Kind::Number; // a vector, or an element
-    if (sign != ")" && sign != "}") return Kind::Unknown;
+    if (sign != ")" && sign != "}" && sign != "]") return Kind::Unknown;
     int nesting = 0;
-    std::size_t open = end;
+    std::size_t open = end, commas = 0;
     while (open-- > 0) {
         const std::string at = place.text(place.tokens()[open]);
         if (at == ")" || at == "}" || at == "]") ++nesting;
         if ((at == "(" || at == "{" || at == "[") && --nesting == 0) break;
+        if (at == "," && nesting == 1) ++commas;
     }
-    if (open == std::size_t(-1) || open == 0) return Kind::Unknown;
+    if (open == std::size_t(-1)) return Kind::Unknown;
+    if (sign == "]") // an element of a list, or a vector
+        return open > 0 && lang::ends_operand(place.tokens()[open - 1].kind)
+                   ? Kind::Unknown
+                   : vector_of(commas + 1);
+    if (open == 0) return Kind::Unknown;
     const lang::Token &callee = place.tokens()[open - 1];
     if (callee.kind != Tok::Name) // `union(…) { … }`, `(a | b)`
         return sign == "}" && depth < most_names ? kind_before(place, open, depth + 1)
@@ -189,7 +247,7 @@ void add_library(const Place &place, Items &items, bool method, Kind kind) {
         const Form form{entry.signature, entry.doc, read_signature(entry.signature)};
         const Kind first = kind_of_first(form.read);
         if (method && form.read.names.empty()) continue;
-        if (method && kind != Kind::Unknown && first != Kind::Unknown && first != kind) continue;
+        if (method && !takes(first, kind)) continue;
         if (seen.insert(entry.name).second)
             add_function(place, items, entry.name, form,
                          method ? Item::Kind::Method : Item::Kind::Function);
@@ -218,9 +276,8 @@ Items members(const Place &place) {
         }
         return items;
     }
-    if (kind == Kind::Number || kind == Kind::Unknown)
-        for (const char *component : {"x", "y", "z", "w"})
-            items.push_back(item(component, Item::Kind::Field));
+    for (const char part : parts_of(kind))
+        items.push_back(item(std::string(1, part), Item::Kind::Field));
     for (const Declaration &declared : place.read.names.declarations) {
         if (!declared.function || !declared.top_level) continue;
         const Form form = form_of(place.file, declared);
@@ -228,8 +285,7 @@ Items members(const Place &place) {
         const Kind first = form.read.parameters[0].find(": ") == std::string::npos
                                ? Kind::Unknown
                                : kind_of_first(form.read);
-        if (kind == Kind::Unknown || first == Kind::Unknown || first == kind)
-            add_function(place, items, declared.name, form, Item::Kind::Method);
+        if (takes(first, kind)) add_function(place, items, declared.name, form, Item::Kind::Method);
     }
     add_library(place, items, true, kind);
     return items;
@@ -237,7 +293,7 @@ Items members(const Place &place) {
 
 // Names of the text that may be meant here.
 void add_own(const Place &place, Items &items) {
-    if (!place.document.types) (void)compiled(place.workspace, place.document);
+    const auto &types = types_of(place.workspace, place.document, false);
     std::set<std::string> seen;
     const auto at = static_cast<std::uint32_t>(place.offset);
     // Where statements begin that hold the place, that stand beside one of these, and the functions.
@@ -267,11 +323,11 @@ void add_own(const Place &place, Items &items) {
                          Item::Kind::Function);
             continue;
         }
-        const auto known = place.document.types->find(declared.name);
+        const auto known = types.find(declared.name);
         items.push_back(
             item(declared.name,
                  declared.by == DeclaredBy::Import ? Item::Kind::Module : Item::Kind::Variable,
-                 known == place.document.types->end() ? "" : known->second));
+                 known == types.end() ? "" : known->second));
     }
     for (std::size_t import : place.read.names.open_imports)
         if (const auto file =

@@ -146,6 +146,13 @@ std::string type_of_name(const Compiled &compiled, const Declaration &declared) 
     return "";
 }
 
+// While nothing is proved yet, by name alone.
+std::string type_of_text(const std::map<std::string, std::string, std::less<>> &types,
+                         const Declaration &declared) {
+    const auto found = types.find(declared.name);
+    return found == types.end() || !declared.top_level ? "" : found->second;
+}
+
 // What a name is: of the text's own names the type or the head, of the library's the entries.
 void add_name(Workspace &workspace, Document &document, std::size_t offset, v1::Hover &hover) {
     const File file = file_of(document);
@@ -153,8 +160,11 @@ void add_name(Workspace &workspace, Document &document, std::size_t offset, v1::
         const auto home = file_at(workspace, target->path);
         const Declaration &declared = home->reading->names.declarations[target->declaration];
         const bool own = home->path == document.path;
-        hover.name = declared_text(
-            *home, declared, own ? type_of_name(compiled(workspace, document), declared) : "");
+        hover.name =
+            declared_text(*home, declared,
+                          own && document.compiled ? type_of_name(*document.compiled, declared)
+                          : own ? type_of_text(types_of(workspace, document, true), declared)
+                                : "");
         return;
     }
     const Use *use = file.reading->names.use_at(offset);
@@ -181,7 +191,14 @@ v1::Hover hover(Workspace &workspace, Document &document, std::size_t offset) {
     const Word word = word_at(document.text, offset);
     v1::Hover hover;
     hover.at = {word.begin, word.end};
-    const Compiled &result = compiled(workspace, document);
+    const Compiled *proved_soon = compiled_soon(workspace, document);
+    if (!proved_soon) {
+        if (!in_comment_or_string(reading(document).syntax, offset))
+            add_name(workspace, document, offset, hover);
+        if (!hover.name.empty()) hover.facts.push_back("The bound is not proved yet.");
+        return hover;
+    }
+    const Compiled &result = *proved_soon;
     for (const v1::Diagnostic &diagnostic : result.diagnostics)
         if (diagnostic.severity == v1::Severity::Error && !diagnostic.notes.empty() &&
             diagnostic.at.file == document.path && diagnostic.at.begin <= offset &&

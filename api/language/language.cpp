@@ -77,6 +77,7 @@ std::vector<std::string> changed(in::Workspace &workspace, in::Document &documen
         if (&other != &document && !other.asked_for.contains(document.path)) continue;
         if (other.compiled) other.replaced = std::move(other.compiled);
         other.compiled.reset();
+        other.types_are_new = false;
         paths.push_back(path);
     }
     return paths;

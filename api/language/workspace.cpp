@@ -3,6 +3,7 @@
 #include "typecheck/check.h"
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -54,13 +55,14 @@ v1::FileProvider files_beside(Workspace &workspace, const fs::path &folder,
 }
 
 // A fault of ours, or a lack of memory, is the only thing that is said of the text then.
-Compiled compile(Workspace &workspace, Document &document) {
+Compiled compile(Workspace &workspace, Document &document, bool types_alone) {
     const auto work = [&] {
         const v1::FileProvider files =
             files_beside(workspace, fs::path(document.path).parent_path(), {}, &document.asked_for);
         driver::CompileOptions options;
         if (workspace.proofs.impl()) options.bounds = &workspace.proofs.impl()->bounds;
         options.cancelled = workspace.outdated;
+        options.types_alone = types_alone;
         Compiled made{
             driver::compile_loaded(document.path, document.text, v1::loader_of(files), options),
             {},
@@ -108,21 +110,55 @@ v1::CompileResult compile_as(Workspace &workspace, const std::string &path, cons
     return result;
 }
 
+static void keep_types(Document &document, const driver::Compilation &from) {
+    std::map<std::string, std::string, std::less<>> types;
+    for (const typecheck::NameFact &name : from.names) types.try_emplace(name.name, name.type);
+    if (!from.good() && document.types) types.merge(*document.types); // of what cannot be read now
+    document.types = std::move(types);
+    document.types_are_new = true;
+}
+
 const Compiled &compiled(Workspace &workspace, Document &document) {
     if (!document.compiled) {
         document.asked_for.clear();
         document.replaced.reset();
-        Compiled made = compile(workspace, document);
+        Compiled made = compile(workspace, document, false);
         if (made.compilation.cancelled) throw Outdated();
         document.compiled = std::move(made);
-        std::map<std::string, std::string, std::less<>> types;
-        for (const typecheck::NameFact &name : document.compiled->compilation.names)
-            types.try_emplace(name.name, name.type);
-        if (!document.compiled->good() && document.types)
-            types.merge(*document.types); // of what cannot be read now
-        document.types = std::move(types);
+        keep_types(document, document.compiled->compilation);
     }
     return *document.compiled;
+}
+
+const Compiled *compiled_soon(Workspace &workspace, Document &document) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::milliseconds patience{300};
+    const auto end = Clock::now() + patience;
+    const std::function<bool()> outdated = workspace.outdated;
+    bool late = false;
+    workspace.outdated = [&] {
+        late = Clock::now() > end;
+        return late || (outdated && outdated());
+    };
+    const Compiled *made = nullptr;
+    try {
+        made = &compiled(workspace, document);
+    } catch (const Outdated &) {
+        workspace.outdated = outdated;
+        if (!late) throw;
+    }
+    workspace.outdated = outdated;
+    return made;
+}
+
+const std::map<std::string, std::string, std::less<>> &types_of(Workspace &workspace,
+                                                                Document &document, bool anew) {
+    if (!document.types || (anew && !document.types_are_new)) {
+        const Compiled made = compile(workspace, document, true);
+        if (made.compilation.cancelled) throw Outdated();
+        keep_types(document, made.compilation);
+    }
+    return *document.types;
 }
 
 const proof::Explanation &explanation(Workspace &workspace, Document &document) {

@@ -41,7 +41,8 @@ struct Document {
     std::shared_ptr<const Reading> reading; // of the text as it is
     std::set<std::string> asked_for;        // paths that compiling it wanted to read
     // Of names, as the last compilations knew them: half-typed texts go on having types.
-    std::optional<std::map<std::string, std::string, std::less<>>> types; // none: never compiled
+    std::optional<std::map<std::string, std::string, std::less<>>> types; // none: never checked
+    bool types_are_new = false;                                           // of the text as it is
 };
 
 // A text of the workspace, open or not.
@@ -81,6 +82,11 @@ struct Outdated : std::exception {
     const char *what() const noexcept override { return "no longer wanted"; }
 };
 const Compiled &compiled(Workspace &workspace, Document &document);
+// The same, or nothing where the proof takes longer than a reader of a hover waits.
+const Compiled *compiled_soon(Workspace &workspace, Document &document);
+// Types of names: of the text as it is where `anew`, else also of an earlier one. Nothing is proved.
+const std::map<std::string, std::string, std::less<>> &types_of(Workspace &workspace,
+                                                               Document &document, bool anew);
 const proof::Explanation &explanation(Workspace &workspace, Document &document);
 const Reading &reading(Document &document);
 

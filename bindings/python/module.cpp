@@ -281,12 +281,23 @@ fathom::Shader shader(const PyScene &scene, const std::string &target, bool fiel
     throw py::error_already_set();
 }
 
+// What a param is given: a number, or the parts of a vector.
+std::vector<double> numbers_of(const std::string &name, py::handle value) {
+    try {
+        return py::isinstance<py::sequence>(value) ? value.cast<std::vector<double>>()
+                                                   : std::vector<double>{value.cast<double>()};
+    } catch (const py::cast_error &) {
+        throw py::value_error("with_params(" + name +
+                              "=…): a param takes a number, or a sequence of "
+                              "numbers, not " +
+                              py::repr(value).cast<std::string>());
+    }
+}
+
 PyScene with_params(const PyScene &scene, const py::kwargs &values) {
     std::map<std::string, std::vector<double>> numbers;
     for (const auto &[name, value] : values)
-        numbers[name.cast<std::string>()] = py::isinstance<py::sequence>(value)
-                                                ? value.cast<std::vector<double>>()
-                                                : std::vector<double>{value.cast<double>()};
+        numbers[name.cast<std::string>()] = numbers_of(name.cast<std::string>(), value);
     fathom::CompileResult result;
     {
         const py::gil_scoped_release release;

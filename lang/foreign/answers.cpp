@@ -449,6 +449,12 @@ bool ForeignSyntax::junk_by_sign(Index first, Index at) {
             return true;
         }
         if (kind(first) != Tok::Let && kind(first) != Tok::Var) return false;
+        if (kind(at + 1) != Tok::Name || kind(at + 2) != Tok::Assign) {
+            if (!ends_statement(at + 1) && !token(at + 1).first_on_line) return false;
+            foreign(span(at), "a statement ends with its line, without a comma")
+                .help("leave it away", {{span(at), ends_statement(at + 1) ? "" : ";"}});
+            return true;
+        }
         if (kind(at + 1) == Tok::Name) lost_.push_back(at + 1);
         std::vector<Edit> edits{{span(at), "; " + std::string(text(first))}};
         for (Edit &further : further_names(at + 1, at + 1)) edits.push_back(std::move(further));

@@ -77,7 +77,10 @@ class ForeignWords : protected WordReading {
     bool strange_sign(std::uint32_t begin, std::uint32_t end, std::uint32_t code_point);
     bool sign_of_mathematics(std::uint32_t begin, std::uint32_t end);
     std::optional<Span> assignment_from(std::uint32_t begin, std::uint32_t end) const;
-    bool makes_prism(Span assignment) const;
+    // What `, $fn = 6` says that would be lost: of a solid whose call is written anew, and of another
+    // call, which may hand it to one.
+    enum class Faces { None, OfSolid, HandedOn };
+    Faces faces_of(Span assignment) const;
     bool told_before(std::uint32_t begin, std::uint32_t end, const std::vector<Edit> &edits);
 
     struct ToldName {
@@ -192,6 +195,8 @@ class ForeignSyntax : protected TokenReading {
     ModuleBody module_body(Index open) const;
     void module_head(Index first, Index after, std::string &head) const;
     bool foreign_minkowski(Index first);
+    bool foreign_hull(Index first);
+    std::string radius_of(Index shape) const;
     bool foreign_modifier(Index at);
     void forget_arguments(Index open) const;
     std::string lisp_value(Index &at) const;
@@ -229,6 +234,7 @@ class ForeignSyntax : protected TokenReading {
     bool word_of_sentence(Index at);
     bool parted_by_semicolon(Index at, Index open);
     bool spaced_statement(Index at);
+    bool values_side_by_side(Index first, Index past);
     bool holds_comma(Index open) const;
 
     // Whether all words may be looked at for one report: not where there are many reports.
@@ -239,6 +245,7 @@ class ForeignSyntax : protected TokenReading {
     bool bars_of_amount(Index at);
     bool keyword_as_name(Index at);
     bool tried_block(Index first);
+    bool named_group(Index first);
     bool loop_of_tuple(Index open, Diagnostic &d);
     bool head_of_loop(Index at);
     std::string loop_of_parts(Index open, std::string list, std::string &lets) const;

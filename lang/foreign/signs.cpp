@@ -278,8 +278,7 @@ std::optional<Span> ForeignWords::assignment_from(std::uint32_t begin, std::uint
     return span(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
 }
 
-// `, $fn = 6` of a `cylinder` or a `circle`, which the edit of that call keeps.
-bool ForeignWords::makes_prism(Span assignment) const {
+ForeignWords::Faces ForeignWords::faces_of(Span assignment) const {
     const std::string_view all = source_.text, name = "$fn";
     const std::string_view whole = all.substr(assignment.begin, assignment.end - assignment.begin);
     const std::size_t sign = whole.find('=');
@@ -288,15 +287,21 @@ bool ForeignWords::makes_prism(Span assignment) const {
     number = number.substr(0, number.find_first_not_of("0123456789"));
     const auto faces =
         whole.find(name) == whole.npos || sign == whole.npos ? std::nullopt : parse_number(number);
-    if (!faces || *faces > 8 || *faces < 3) return false;
+    if (!faces || *faces > 8 || *faces < 3) return Faces::None;
     int depth = 0;
     constexpr std::size_t farthest = 1000;
     for (std::size_t i = assignment.begin, n = 0; i-- > 0 && n < farthest; ++n) {
         depth += all[i] == ')' ? 1 : all[i] == '(' ? -1 : 0;
-        if (depth < 0)
-            return all.substr(0, i).ends_with("cylinder") || all.substr(0, i).ends_with("circle");
+        if (depth >= 0) continue;
+        const std::string_view before = all.substr(0, i);
+        if (before.ends_with("cylinder") || before.ends_with("circle")) return Faces::OfSolid;
+        constexpr std::array<std::string_view, 3> round = {"sphere", "rotate_extrude", "torus"};
+        const bool smooth = std::ranges::any_of(
+            round, [&](std::string_view solid) { return before.ends_with(solid); });
+        return smooth || before.empty() || !is_word_char(before.back()) ? Faces::None
+                                                                        : Faces::HandedOn;
     }
-    return false;
+    return Faces::HandedOn; // for all that follows
 }
 
 } // namespace fathom::lang

@@ -193,6 +193,27 @@ std::string ForeignSyntax::spaced_value(Index first, Index past, bool &apart) co
 }
 
 // `let s = sphere 1 >> move [1, 0, 0]`, at any of its words: the whole value of the statement.
+// `a b` of names that stand for values, not for functions.
+bool ForeignSyntax::values_side_by_side(Index first, Index past) {
+    if (past != first + 2 || kind(first + 1) != Tok::Name || !may_look_far()) return false;
+    bool is_value[] = {false, false};
+    for (Index i = 0; i < first; ++i) {
+        if (!is_one_of(kind(i), {Tok::Let, Tok::Var}) || kind(i + 2) != Tok::Assign) continue;
+        const bool function = is_one_of(kind(i + 3), {Tok::LambdaOpen, Tok::LambdaName});
+        for (Index k : {Index{0}, Index{1}})
+            if (text(i + 1) == text(first + k)) is_value[k] = !function;
+    }
+    if (!is_value[0] || !is_value[1]) return false;
+    const std::string a(text(first)), b(text(first + 1));
+    failed_ = past;
+    foreign(span(first, first + 1), "an operator is missing between two values")
+        .help("shapes are united by `a | b`, cut by `a - b`, and `a & b` is what both have in "
+              "common: write " +
+                  in_code(a + " | " + b),
+              {{{id_, token(first).end, token(first + 1).begin}, " | "}});
+    return true;
+}
+
 bool ForeignSyntax::spaced_statement(Index at) {
     constexpr Index longest = 300; // words
     Index first = at;
@@ -206,6 +227,7 @@ bool ForeignSyntax::spaced_statement(Index at) {
     const Index past = statement_end(first);
     if (kind(first) != Tok::Name || at >= past || past > first + longest) return false;
     bool apart = false;
+    if (values_side_by_side(first, past)) return true;
     if (sentence(first, past)) return true;
     const std::string value = spaced_value(first, past, apart);
     if (value.empty() || !apart) return false;

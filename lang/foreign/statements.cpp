@@ -3,6 +3,7 @@
 // stands around the value of a `param`.
 #include "base/suggest.h"
 #include "lang/foreign/foreign.h"
+#include "lang/lexer.h"
 
 #include <algorithm>
 #include <array>
@@ -277,6 +278,33 @@ bool ForeignSyntax::counted_block(Index first, Index at) {
     failed_ = match(brace) > brace ? match(brace) : brace;
     foreign(span(first, brace - 1), "a loop is written `for i in 0..8 { … }`")
         .help("write " + in_code(head + " { … }"), {{span(first, brace - 1), head}});
+    return true;
+}
+
+// `group("wheel") { … }`, as editors of models have it.
+bool ForeignSyntax::named_group(Index first) {
+    constexpr std::array<std::string_view, 7> words = {"group", "part",  "object",   "node",
+                                                       "layer", "solid", "component"};
+    const Index close = match(first + 1), open = close + 1;
+    if (!is_one_of(text(first), words) || kind(first + 1) != Tok::Open ||
+        kind(first + 2) != Tok::String || close != first + 3 ||
+        !is_one_of(kind(open), {Tok::Body, Tok::Trailing, Tok::StrayBrace}) ||
+        match(open) <= open || !ends_statement(match(open) + 1) || may_be_declared(text(first)))
+        return false;
+    const std::string_view quoted = text(first + 2);
+    std::string name(quoted.substr(1, quoted.size() - 2));
+    std::ranges::replace(name, ' ', '_');
+    const bool plain = !name.empty() && !is_digit(name[0]) && !is_keyword_text(name) &&
+                       std::ranges::all_of(name, is_word_char) && !may_be_declared(name);
+    failed_ = match(open);
+    Diagnostic &d = foreign(span(first), "a part is called by the name that it is bound to");
+    if (!plain)
+        d.help("write `let name = union { … }`, and `name` where it stands");
+    else
+        d.help("write " + in_code("let " + name + " = union { … }") + ", and " + in_code(name) +
+                   " where it stands",
+               {{{id_, token(first).begin, token(open).begin}, "let " + name + " = union "},
+                {{id_, token(match(open)).end, token(match(open)).end}, "; " + name}});
     return true;
 }
 

@@ -269,6 +269,8 @@ bool ForeignSyntax::juxtaposed_calls(Index first, Index at) {
     if (kind(first) != Tok::Name || kind(first + 1) != Tok::Open ||
         !is_foreign_transform(text(first)))
         return false;
+    if (text(first) == "render" && kind(first + 2) == Tok::Name && text(first + 2) != "convexity")
+        return false; // a setting of ours
     constexpr int longest_chain = 20;
     std::string chain;
     Index shape = first;
@@ -339,7 +341,7 @@ bool ForeignSyntax::of_openscad(Index first) {
                        is_one_of(kind(behind), {Tok::Name, Tok::For, Tok::If}) &&
                        (kind(behind) == Tok::Name || !token(behind).first_on_line);
     return (moves && juxtaposed_calls(first, first)) || foreign_solid(first) ||
-           foreign_minkowski(first);
+           foreign_minkowski(first) || foreign_hull(first);
 }
 
 } // namespace fathom::lang

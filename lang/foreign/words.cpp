@@ -72,6 +72,7 @@ bool begins_value(Tok kind) {
 // -- statements ----------------------------------------------------------------------------------
 
 bool ForeignSyntax::foreign_statement(Index first) {
+    if (kind(first) == Tok::Name && named_group(first)) return true;
     const auto begins_record = [&](Index i) {
         return kind(i) == Tok::StrayBrace || kind(i) == Tok::Trailing;
     };

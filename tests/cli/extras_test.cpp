@@ -41,6 +41,29 @@ TEST_CASE("several scenes are checked, and the worst decides") {
     CHECK(shell(folder, "fathom check - - <good.sdf").exit == 2);
 }
 
+TEST_CASE("who asks for a document gets one, also of what cannot be read") {
+    Extras folder;
+    for (const char *asked : {"check --json", "measure --json", "mesh --json -o a.stl"})
+        for (const char *file : {"bad.sdf", "nowhere.sdf"}) {
+            const Result said = shell(folder, std::string("fathom ") + asked + " " + file);
+            INFO(asked << " " << file << "\n" << said.out);
+            CHECK(said.exit == (file[0] == 'b' ? 1 : 3));
+            CHECK(count(said.out, "\n") == 1);
+            CHECK(contains(said.out, "\"ok\":false"));
+            CHECK(contains(said.out, "\"status\":null"));
+        }
+    folder.write("endless.sdf", "plane()\n");
+    CHECK(contains(shell(folder, "fathom measure --json endless.sdf").out, "\"why\":"));
+}
+
+TEST_CASE("a misspelt option is told before what is missing") {
+    Extras folder;
+    CHECK(contains(shell(folder, "fathom mesh --tolerence 3 good.sdf").err,
+                   "did you mean `--tolerance`?"));
+    CHECK(contains(shell(folder, "fathom slice --section good.sdf").err, "`--section`"));
+    CHECK(contains(shell(folder, "fathom mesh good.sdf").err, "-o"));
+}
+
 TEST_CASE("eval takes numbers as they are") {
     Extras folder;
     CHECK(shell(folder, "fathom eval other.sdf 3 0 0 -1 -.5 -2e0 --at 0,4,0").out ==

@@ -89,6 +89,9 @@ def test_params():
         scene.with_params(r=3)
     with pytest.raises(fathom.Error, match="no param `s`"):
         scene.with_params(s=3)
+    for wrong in ("x", None, [1, "y", 0]):
+        with pytest.raises(ValueError, match="takes a number"):
+            scene.with_params(r=wrong)
 
 
 def test_facts():

@@ -1,6 +1,9 @@
 // Bauble and libfive as a tree: forms in parentheses, Bauble's pipe, and names with hyphens.
 #include "lang/foreign/program/program.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace fathom::lang::program {
 
 namespace {
@@ -9,12 +12,15 @@ class LispReader {
   public:
     explicit LispReader(std::string_view text) : text_(text) {}
 
-    std::vector<Node> all() {
-        std::vector<Node> out;
+    std::vector<TopForm> all() {
+        std::vector<TopForm> out;
         while (skip()) {
             if (text_[at_] != '(') throw Unsure{};
-            out.push_back(form());
+            Node read = form();
+            remark_behind();
+            out.push_back({std::move(read), std::exchange(comment_, {})});
         }
+        if (!comment_.empty()) out.push_back({node(Is::List, "("), std::move(comment_)});
         return out;
     }
 
@@ -23,13 +29,30 @@ class LispReader {
         while (at_ < text_.size()) {
             const char c = text_[at_];
             if (c == ';' || c == '#')
-                at_ = std::min(text_.find('\n', at_), text_.size());
+                remark();
             else if (c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == ',')
                 ++at_;
             else
                 return true;
         }
         return false;
+    }
+
+    // The comment at hand, as a line of ours.
+    void remark() {
+        const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+        std::string_view said = text_.substr(at_, end - at_);
+        said.remove_prefix(std::min(said.find_first_not_of(";# \t"), said.size()));
+        said = said.substr(0, said.find_last_not_of(" \t\r") + 1);
+        if (!said.empty()) comment_ += "// " + std::string(said) + "\n";
+        at_ = end;
+    }
+    // A comment behind a form, on its last line, is of that form.
+    void remark_behind() {
+        const std::size_t next = text_.find_first_not_of(" \t", at_);
+        if (next == text_.npos || (text_[next] != ';' && text_[next] != '#')) return;
+        at_ = next;
+        remark();
     }
 
     Node form() {
@@ -87,12 +110,13 @@ class LispReader {
     }
 
     std::string_view text_;
+    std::string comment_; // those of the form at hand
     std::size_t at_ = 0;
     int depth_ = 0, count_ = 0, pipes_ = 0;
 };
 
 } // namespace
 
-std::vector<Node> read_lisp(std::string_view text) { return LispReader(text).all(); }
+std::vector<TopForm> read_lisp(std::string_view text) { return LispReader(text).all(); }
 
 } // namespace fathom::lang::program

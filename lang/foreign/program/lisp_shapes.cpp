@@ -351,8 +351,11 @@ std::optional<Written> Writer::lisp_change(const std::string &name, const Node &
     return std::nullopt;
 }
 
-std::string Writer::program(const std::vector<Node> &forms) {
-    for (const Node &form : forms) lisp_statement(form);
+std::string Writer::program(const std::vector<TopForm> &forms) {
+    for (const auto &[form, above] : forms) {
+        comment(above);
+        if (!form.parts.empty()) lisp_statement(form);
+    }
     if (!shown_) throw Unsure{};
     return out_;
 }

@@ -83,7 +83,13 @@ struct Statement {
 
 std::vector<Statement> read_script(const std::vector<Piece> &pieces, bool python);
 std::vector<Statement> read_curv(const std::vector<Piece> &pieces);
-std::vector<Node> read_lisp(std::string_view text); // forms are lists by `(` or `[`
+// A form at the top level, a list by `(` or `[`, and the comments above and in it; the last has none,
+// and what stands below all others.
+struct TopForm {
+    Node form;
+    std::string comment;
+};
+std::vector<TopForm> read_lisp(std::string_view text);
 
 Node node(Is is, std::string text, std::vector<Node> parts = {});
 inline bool is_named(const Node &n, std::string_view name) {
@@ -123,7 +129,7 @@ class Writer {
     explicit Writer(Of of) : of_(of) {}
 
     std::string program(const std::vector<Statement> &statements);
-    std::string program(const std::vector<Node> &forms); // of Bauble and libfive
+    std::string program(const std::vector<TopForm> &forms); // of Bauble and libfive
     const std::set<std::string> &lost() const { return lost_; }
 
   private:
@@ -171,6 +177,7 @@ class Writer {
     Gathering gathering(const Statement &s) const;
     Gathering gathering_in(const std::vector<Statement> &body) const;
     void line(const std::string &text);
+    void comment(const std::string &lines);
     std::string declare(const std::string &name, Kind kind);
     std::string fresh(const std::string &name) const;
     std::string parameters(const Statement &s);

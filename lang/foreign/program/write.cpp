@@ -135,12 +135,16 @@ void Writer::block(const std::vector<Statement> &body, bool top) {
 
 // -- statements ----------------------------------------------------------------------------------
 
-void Writer::statement(const Statement &s, bool top, bool last) {
-    for (std::size_t at = 0; at < s.comment.size();) {
-        const std::size_t end = s.comment.find('\n', at);
-        line(s.comment.substr(at, end - at));
+void Writer::comment(const std::string &lines) {
+    for (std::size_t at = 0; at < lines.size();) {
+        const std::size_t end = std::min(lines.find('\n', at), lines.size());
+        line(lines.substr(at, end - at));
         at = end + 1;
     }
+}
+
+void Writer::statement(const Statement &s, bool top, bool last) {
+    comment(s.comment);
     if (!gathered_.empty()) {
         if (const Gathering g = gathering(s); g.into == gathered_) return line(text(*g.added));
     }

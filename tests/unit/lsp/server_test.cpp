@@ -5,7 +5,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -160,6 +162,58 @@ TEST_CASE("completion after a dot leaves out the text's own names") {
     CHECK(has(free, "sphere"));
 }
 
+TEST_CASE("completion offers the parts that a vector has, and functions that take it") {
+    Client client;
+    client.open("fn knob(r: float) = sphere(r)\nlet v = vec2(1, 2)\nlet q = v.\nlet r = [1, 2].\n"
+                "let t = [1, 2, 3].\nlet u = 1.5.\nimplicit(p => p.\n");
+    const auto parts = [&](int line, int character) {
+        std::string letters;
+        for (const Json &item :
+             client.result("textDocument/completion", Client::at(line, character))) {
+            const std::string label = item.at("label");
+            if (label.size() == 1 && std::string("xyzw").find(label) != std::string::npos)
+                letters += label;
+            if (label == "knob") letters += "!";
+        }
+        return letters;
+    };
+    CHECK(parts(2, 10) == "xy");
+    CHECK(parts(3, 15) == "xy");
+    CHECK(parts(4, 18) == "xyz");
+    CHECK(parts(6, 16) == "xyz");
+}
+
+// A field whose proof takes seconds.
+constexpr const char *dear =
+    "let size = 2.0\nimplicit(p => { var d = 0.0\nfor i in -2..=2 { for j in -2..=2 { for k in "
+    "-2..=2 { let c = floor(p) + vec3(i,j,k)\n d += exp(-9 * length(p - c - vec3(hash(c), hash(c + "
+    "7), hash(c + 13)))) } } }\n -log(d) / 9 - 0.2 }, within: ball(size))\n";
+
+TEST_CASE("completion and hover do not wait for a long proof") {
+    Client client;
+    client.open(dear);
+    const auto began = std::chrono::steady_clock::now();
+    const Json items = client.result("textDocument/completion", Client::at(5, 0));
+    const auto size =
+        std::ranges::find_if(items, [](const Json &item) { return item.at("label") == "size"; });
+    REQUIRE(size != items.end());
+    CHECK(size->at("detail") == "float");
+    const std::string said =
+        client.result("textDocument/hover", Client::at(0, 5)).at("contents").at("value");
+    CHECK(said.find("size: float") != std::string::npos);
+    CHECK(said.find("not proved yet") != std::string::npos);
+    // The proof takes 9 s of the processor, of which none is in the completion.
+    CHECK(std::chrono::steady_clock::now() - began < std::chrono::seconds(8));
+}
+
+TEST_CASE("a request that lacks a parameter is told so in words") {
+    Client client;
+    client.open("sphere(1)\n");
+    const Json error = client.request("textDocument/hover", Json::object()).at("error");
+    CHECK(error.at("code") == -32602);
+    CHECK(error.at("message") == "the parameters of textDocument/hover have no `textDocument`");
+}
+
 TEST_CASE("completion after a dot knows parameters and names of blocks by their types") {
     Client client;
     const auto offered = [&](const std::string &text, const std::string &name) {
@@ -184,11 +238,14 @@ TEST_CASE("completion after a dot knows parameters and names of blocks by their 
     }
     for (const std::string text :
          {"fn f(v: vec3) { v.@ }\n", "fn f(s) {\n  let v = [1, 2, 3]\n  v.@\n}\n",
-          "let s = box(1)\nfn f(s: float) { s.@ }\n"}) {
+          "let s = box(1)\nfn f(s: vec2) { s.@ }\n"}) {
         INFO(text);
         CHECK(offered(text, "x"));
         CHECK_FALSE(offered(text, "twist"));
     }
+    CHECK(offered("fn f(s: float) { s.@ }\n", "sqrt"));
+    CHECK_FALSE(offered("fn f(s: float) { s.@ }\n", "x"));
+    CHECK_FALSE(offered("fn f(s: float) { s.@ }\n", "twist"));
     // names that stand for each other end
     CHECK_FALSE(offered("fn f() {\n  let union = union { 1 }\n  union.@\n}\n", "none such"));
 }
