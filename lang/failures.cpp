@@ -9,6 +9,10 @@ namespace fathom::lang {
 
 namespace {
 
+constexpr std::array<std::string_view, 7> joining = {
+    "union",        "intersection",      "difference",         "smooth_union",
+    "smooth_blend", "smooth_difference", "smooth_intersection"};
+
 std::string wanted_text(Wanted wanted) {
     switch (wanted) {
     case Wanted::Expression: return "an expression";
@@ -183,9 +187,6 @@ void Builder::generic_failure(Wanted wanted, Index at) {
             const std::uint32_t end = token(at - 1).end;
             const bool shapes = found == Tok::Name && kind(at - 1) == Tok::Close &&
                                 kind(at + 1) == Tok::Open && !token(at).first_on_line;
-            constexpr std::array<std::string_view, 7> joining = {
-                "union",        "intersection",      "difference",         "smooth_union",
-                "smooth_blend", "smooth_difference", "smooth_intersection"};
             const Index open = shapes ? match(at - 1) : 0;
             if (open > 0 && open < at && is_one_of(text(open - 1), joining)) // `union() a, b`
                 d.help("the shapes that are joined stand in braces: " +

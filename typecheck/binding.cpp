@@ -362,12 +362,7 @@ std::optional<std::vector<Given>> bind_arguments(Interpreter &ev, std::string_vi
         while (end < args.size() && !args[end].name && !args[end].trailing &&
                is_scalar(ev, args[end].value))
             ++end;
-        // `repeat(2, 3, 4)`: the third number stands where a function may
-        const bool one_vector =
-            formals[i].is_place ||
-            (end - first == formals[i].vector_size && i + (end - first) <= formals.size() &&
-             formals[i + (end - first) - 1].takes_function);
-        if (!one_vector || end - first < 2) continue;
+        if (!is_vector_by_numbers(formals, i, end - first)) continue;
         const Fix fix =
             remedy_of_row(args.subspan(first, end - first), formals[i].vector_size, true);
         report(ev, Code::TypeMismatch, join(args[first].span, args[end - 1].span),

@@ -388,10 +388,7 @@ void declare_param(Interpreter &ev, const File &ast, const lang::Param &param,
             if (!whole(*param.low) || !whole(*param.high)) p.type = ir::Type::Float;
         }
         if (p.type == ir::Type::Bool || p.is_color) {
-            const Span range = join(ast.exprs[*param.low].span, ast.exprs[*param.high].span);
-            const Span last = ast.exprs[param.value].span;
-            report(ev, Code::BadArgument, param.name.span, "a bool or a color has no range")
-                .help("leave the range away", {{{last.source, last.end, range.end}, ""}});
+            report_needless_range(ev, ast, param);
             return fail();
         }
         auto lo = param_number(ev, ast, *param.low, p, frame),

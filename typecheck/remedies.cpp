@@ -418,27 +418,6 @@ std::string_view way_of_part(std::string_view part) {
     return {};
 }
 
-// A value of the file that bears the name of the member, and how the shape is given it.
-struct OwnValue {
-    std::string message, call;
-};
-static OwnValue own_value(Interpreter &ev, const File &ast, const std::string &name) {
-    if (ev.quiet > 0) return {};
-    for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
-        const auto *let = std::get_if<lang::Let>(&s.kind);
-        if (!let || let->name.text != name) continue;
-        const auto *made = std::get_if<lang::Call>(&ast.exprs[let->value].kind);
-        const auto *callee =
-            made ? std::get_if<lang::Name>(&ast.exprs[made->callee].kind) : nullptr;
-        const bool look = std::holds_alternative<lang::Color>(ast.exprs[let->value].kind) ||
-                          (callee && (callee->text == "material" || callee->text == "rgb"));
-        if (look)
-            return {fmt::format("a shape is given a colour or a material by `.paint({})`", name),
-                    fmt::format(".paint({})", name)};
-    }
-    return {};
-}
-
 void report_unknown_member(Interpreter &ev, const Value &object, const File &ast,
                            const lang::Member &member, Span place) {
     const lang::Identifier &name = member.name;

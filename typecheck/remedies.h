@@ -51,6 +51,13 @@ std::vector<Edit> part_of_shape(Interpreter &ev, const File &ast, const lang::Me
 // `s.material("gold")`, `random.uniform(0, 1)`.
 // Where a value of the file hides the library's function that is called: another name for the value.
 bool help_with_hidden(Interpreter &ev, Diagnostic &d, std::string_view name, Span callee);
+// A value of the file that bears the name of the member, and how the shape is given it.
+struct OwnValue {
+    std::string message, call;
+};
+OwnValue own_value(Interpreter &ev, const File &ast, const std::string &name);
+void report_needless_range(Interpreter &ev, const File &ast, const lang::Param &param);
+bool is_vector_by_numbers(std::span<const Formal> formals, std::size_t i, std::size_t numbers);
 bool is_foreign_method(Interpreter &ev, const Value &object, const File &ast,
                        const lang::Member &member, const lang::Call &call, Span place);
 // For `l.push(x)` in a loop, `l.forEach(f)`, `l.sum()`: what does the same. Empty where that is not

@@ -158,4 +158,35 @@ bool help_with_hidden(Interpreter &ev, Diagnostic &d, std::string_view name, Spa
     return true;
 }
 
+OwnValue own_value(Interpreter &ev, const File &ast, const std::string &name) {
+    if (ev.quiet > 0) return {};
+    for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
+        const auto *let = std::get_if<lang::Let>(&s.kind);
+        if (!let || let->name.text != name) continue;
+        const auto *made = std::get_if<lang::Call>(&ast.exprs[let->value].kind);
+        const auto *callee =
+            made ? std::get_if<lang::Name>(&ast.exprs[made->callee].kind) : nullptr;
+        const bool look = std::holds_alternative<lang::Color>(ast.exprs[let->value].kind) ||
+                          (callee && (callee->text == "material" || callee->text == "rgb"));
+        if (look)
+            return {fmt::format("a shape is given a colour or a material by `.paint({})`", name),
+                    fmt::format(".paint({})", name)};
+    }
+    return {};
+}
+
+void report_needless_range(Interpreter &ev, const File &ast, const lang::Param &param) {
+    const Span last = ast.exprs[param.value].span, high = ast.exprs[*param.high].span;
+    report(ev, Code::BadArgument, param.name.span, "a bool or a color has no range")
+        .help("leave the range away", {{{last.source, last.end, high.end}, ""}});
+}
+
+// `translate(1, 2, 3)`; and `repeat(2, 3, 4)`, whose third number stands where a function may.
+bool is_vector_by_numbers(std::span<const Formal> formals, std::size_t i, std::size_t numbers) {
+    if (numbers < 2) return false;
+    return formals[i].is_place ||
+           (numbers == formals[i].vector_size && i + numbers <= formals.size() &&
+            formals[i + numbers - 1].takes_function);
+}
+
 } // namespace fathom::typecheck
