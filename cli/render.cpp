@@ -18,9 +18,10 @@ namespace {
 void say_passed(const v1::Picture &painted, const std::string &out, Terminal &terminal) {
     if (painted.passed == 0 || painted.passed * 2000 < painted.rays) return;
     terminal.say(fmt::format(
-        "fathom: {}: {} of {} rays pass a surface that has no inside (the field is 0 there, and "
-        "above 0 on both sides): it is not drawn. A cut that ends in the plane of what it cuts "
-        "should reach a little farther; a sheet needs a thickness, as `shell` and `- 0.01` give it",
+        "fathom: {}: {} of {} rays pass a surface that has no inside, or one too thin for single "
+        "precision from there (the field is 0, and above 0 on both sides): it is not drawn. A cut "
+        "that ends in the plane of what it cuts should reach a little farther; a sheet needs a "
+        "thickness, as `shell` and `- 0.01` give it",
         out, painted.passed, painted.rays));
 }
 

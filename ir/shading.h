@@ -48,7 +48,8 @@
 //     the budget is spent: undecided at t
 //     d = f(o + t*dir)
 //     while it touches (TOUCHES), and where d <= 0 and not below -slack(t)/4, TOUCHES says what is next
-//     if d <= 0 and aims: a hit between t - stride and t (REFINED)
+//     if d < -slack(t)/4 and aims: a hit between t - stride and t (REFINED); where d is 0, that may be
+//       the far side of something thin
 //     if stride > before + max(d, 0): the last two spheres do not overlap, so something may lie
 //       between them. Go back to the first sphere's edge: t += before - stride, stride = before,
 //       aims = false, and go on with the next iteration
@@ -79,7 +80,8 @@
 //
 //   TOUCHES: the solid is the closure of {f < 0}. Where a cut ends in the plane of what it cuts, f is 0
 //   on a film and above 0 on both sides of it: rounding alone could tell such a touch, |f| <
-//   slack(t)/4, from a surface. So what lies behind it decides. The ray goes on from a touch by
+//   slack(t)/4, from a surface. So what lies behind it decides. The ray goes on from a touch so far
+//   that d falls by probe_depth*slack(t)/4, if it falls on as over the last stride, at most by
 //   probe*slack(t)/4, and by twice the step before from then on, at most graze*tolerance(t), so that
 //   whatever is thicker than a few slacks is met at any angle.
 //     d < -slack(t)/4, or d <= 0 for the deep-th time in a row: a hit between the last sample that was
@@ -296,10 +298,11 @@ inline constexpr float jump = 2, graze = 1.0f / 16;         // tolerances
 inline constexpr int refinements = 12;
 inline constexpr float refined = 1.0f / 2048; // of a tolerance
 inline constexpr float across = 1.0f / 32; // the slope behind a touch, from which on it is no graze
-inline constexpr float probe = 8;          // slack/4: the first step beyond what is touched
-inline constexpr int film_steps = 8;       // to what may be a film
-inline constexpr float film_lower = 0.97f; // of the value before
-inline constexpr int film_stalls = 2;      // steps in a row
+inline constexpr float probe = 8; // slack/4: the first step beyond what is touched, at most
+inline constexpr float probe_depth = 2.5f;            // slack/4: how deep it leads
+inline constexpr int film_steps = 8;                  // to what may be a film
+inline constexpr float film_lower = 0.97f;            // of the value before
+inline constexpr int film_stalls = 2;                 // steps in a row
 inline constexpr float film_near = 8, film_look = 64; // slack/4
 inline constexpr float film_flat = 1e-6f;       // the square of a sine: two ways that are as one
 inline constexpr int film_looks = 24;           // on a circle,

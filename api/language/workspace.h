@@ -86,7 +86,7 @@ const Compiled &compiled(Workspace &workspace, Document &document);
 const Compiled *compiled_soon(Workspace &workspace, Document &document);
 // Types of names: of the text as it is where `anew`, else also of an earlier one. Nothing is proved.
 const std::map<std::string, std::string, std::less<>> &types_of(Workspace &workspace,
-                                                               Document &document, bool anew);
+                                                                Document &document, bool anew);
 const proof::Explanation &explanation(Workspace &workspace, Document &document);
 const Reading &reading(Document &document);
 

@@ -50,7 +50,7 @@ inline Verdict judge(Walk &walk, const Lengths &lengths) {
     }
     const Verdict inside =
         walk.d < -film || lengths.estimate > 0 ? Verdict::Crossed : Verdict::Touches;
-    if (walk.d <= 0 && walk.aims) return inside;
+    if (walk.d <= 0 && walk.aims && inside == Verdict::Crossed) return inside;
     if (apart(walk)) return Verdict::GoBack;
     if (walk.d <= 0) return inside;
     const bool nearing = lengths.estimate > 0 && walk.d < walk.before &&
@@ -137,18 +137,20 @@ inline void advance(Walk &walk, float end, const Lengths &lengths, bool brute) {
 // On from a sample that touches: a few slacks first, then ever more, so that whatever is thicker than
 // these is met at any angle.
 inline void pass(Walk &walk, float end, const Lengths &lengths) {
+    const float film = 0.25f * lengths.slack_at(walk.t);
     if (walk.touches == 0) {
         walk.film = walk.stride;
-        walk.stride = 0;
+        walk.stride = 0.5f * film * ir::shading::probe_depth /
+                      std::max(slope_along(walk), ir::shading::probe_depth / ir::shading::probe);
     }
     if (walk.d > 0) {
         walk.film = 0;
         walk.before = walk.d;
     }
     walk.touches = walk.d > 0 ? 1 : std::max(walk.touches, 1) + 1;
-    const float least = ir::shading::probe * 0.25f * lengths.slack_at(walk.t);
-    const float most = std::max(least, ir::shading::graze * lengths.tolerance(walk.t));
-    const float next = std::min(std::max(least, 2 * walk.stride), most);
+    const float most =
+        std::max(ir::shading::probe * film, ir::shading::graze * lengths.tolerance(walk.t));
+    const float next = std::min(2 * walk.stride, most);
     const float to = walk.t < end ? std::min(walk.t + next, end) : walk.t + next;
     walk.stride = next;
     walk.film += to - walk.t;

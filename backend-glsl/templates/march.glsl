@@ -199,12 +199,12 @@ $end
             ++steps;
             float tolerance = fathom_tolerance(t);
 $if HAS_SAFE_RADIUS
-            if (!(d <= 0.0 && aims) && stride > before + max(d, 0.0) && !(d > 0.0 && stride <= reached + span)) {
+            if (!(d $CROSSED && aims) && stride > before + max(d, 0.0) && !(d > 0.0 && stride <= reached + span)) {
                 float to = reached + $NEARER_PART * min(span, reached);
                 if (!(d > 0.0)) to = min(reached, stride * before / (before - d) - 0.5 * tolerance);
                 to = max(before, min(to, stride));
 $else
-            if (!(d <= 0.0 && aims) && stride > before + max(d, 0.0)) {
+            if (!(d $CROSSED && aims) && stride > before + max(d, 0.0)) {
                 float to = before;
 $end
                 t += to - stride;
@@ -252,7 +252,8 @@ $include march_ahead
             }
             if (touches == 0) {
                 passed = stride;
-                pace = 0.0;
+                float slope = stride > 0.0 ? (before - d) / stride : 0.0;
+                pace = 0.5 * film * $PROBE_DEPTH / max(slope, $PROBE_DEPTH / $PROBE);
             }
             if (d > 0.0) {
                 passed = 0.0;
@@ -260,7 +261,7 @@ $include march_ahead
             }
             touches = d > 0.0 ? 1 : max(touches, 1) + 1;
             stride = 0.0;
-            pace = min(max($PROBE * film, 2.0 * pace), max($PROBE * film, $GRAZE * tolerance));
+            pace = min(2.0 * pace, max($PROBE * film, $GRAZE * tolerance));
             float to = mix(t + pace, min(t + pace, end), t < end);
             passed += to - t;
             t = to;

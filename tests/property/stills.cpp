@@ -3,6 +3,8 @@
 #include "tests/property/stills.h"
 
 #include <array>
+#include <cmath>
+#include <fmt/format.h>
 #include <numeric>
 #include <utility>
 
@@ -369,6 +371,20 @@ TEST_CASE("a sheet as thin as a thousandth is seen whole") {
         INFO(at);
         CHECK(std::abs(hits(at, "0.001") - hits(at, "0.004")) <= few);
     }
+}
+
+TEST_CASE("a thin sheet is seen whole from afar") {
+    for (const double away : {100, 200, 300, 400})
+        for (const double turned : {0.0, 0.2, 0.5, 0.8}) {
+            const auto sheet = [&](const char *thick) {
+                return drawn(fmt::format(
+                    "camera(at: [{}, 0, {}], fov: {}deg)\nlighting(soft_shadows: 0)\n"
+                    "box([2, 2, {}]).paint(tomato)\n",
+                    away * turned, away * std::sqrt(1 - turned * turned), 160 / away, thick));
+            };
+            INFO(away << " away, turned " << turned);
+            CHECK(different(sheet("0.001"), sheet("0.003")) <= height); // a column, its side
+        }
 }
 
 TEST_CASE("what is far away, or a ground's size, changes nothing near") {

@@ -50,6 +50,7 @@ constexpr const char *numbers[] = {"FAR",
                                    "DARK_LIGHT",
                                    "WIDEST",
                                    "PROBE",
+                                   "PROBE_DEPTH",
                                    "ACROSS",
                                    "FILM_NEAR",
                                    "FILM_LOOK",
@@ -171,6 +172,7 @@ Values values_with(std::string_view name, const std::set<std::string> &on) {
         {"PART", ".x"},
         {"TEXT", ""},
         {"NO_ESTIMATE", ""},
+        {"CROSSED", "< 0.0"},
         {"NUMBER", "1"},
     };
     values["HIT"] =
