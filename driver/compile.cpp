@@ -201,8 +201,10 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
                 .note("look for copies of copies, or loops in loops")
                 .help(limit_help(options.limits, &Limits::point));
         } else {
-            find_framing(out.scene, out.diagnostics); // which says what a pixel shows
-            tell_of_view_inside(out.scene, out.diagnostics);
+            const ir::Interval times =
+                proof_options.times.value_or(ir::Interval(0, out.scene.render.time_end));
+            find_framing(out.scene, times, out.diagnostics); // which says what a pixel shows
+            tell_of_view_inside(out.scene, times.lo, out.diagnostics);
             proof::bound_rounding(out.scene, out.diagnostics, proof_options.times);
         }
         if (options.strict_proof) refuse_unproved(out);

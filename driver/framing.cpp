@@ -20,19 +20,20 @@ constexpr double most_work = 200e6;     // operations on boxes
 constexpr std::size_t first_a_side = 1; // parts that are looked at together at first
 
 // Spread over the whole time by the golden ratio, so that no period of the motion is met in step.
-std::vector<double> times_of(const ir::Scene &scene, ir::FunctionId part) {
-    std::vector<double> times{0};
-    if (!scene.graph.reads(scene.graph.function(part).result).time) return times;
+std::vector<double> moments_of(const ir::Scene &scene, ir::FunctionId part, ir::Interval times) {
+    std::vector<double> all{times.lo};
+    if (!scene.graph.reads(scene.graph.function(part).result).time || !(times.lo < times.hi))
+        return all;
     constexpr double golden = 0.61803398874989485;
     for (int k = 1; k < moments; ++k)
-        times.push_back(scene.render.time_end * (golden * k - std::floor(golden * k)));
-    return times;
+        all.push_back(times.lo + (times.hi - times.lo) * (golden * k - std::floor(golden * k)));
+    return all;
 }
 
 ir::Box over_time(const ir::Scene &scene, ir::FunctionId part, const ir::Box &domain,
-                  double &work) {
+                  ir::Interval times, double &work) {
     ir::Box box;
-    for (const double time : times_of(scene, part))
+    for (const double time : moments_of(scene, part, times))
         box = ir::hull(box, cpu::solid_box(scene, part, domain, time, work));
     return box;
 }
@@ -66,7 +67,7 @@ bool within(const ir::Box &box, const ir::Box &outer) {
 
 // The box of the parts that have bounds: first that of the outermost, which mostly holds the bounds
 // of all others; then of more of those that it does not.
-ir::Box of_bounded(ir::Scene &scene, double &work) {
+ir::Box of_bounded(ir::Scene &scene, ir::Interval times, double &work) {
     const std::vector<ir::Scene::Framed> &parts = scene.framed_bounded;
     std::vector<std::size_t> left(parts.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
@@ -84,7 +85,7 @@ ir::Box of_bounded(ir::Scene &scene, double &work) {
                                       {},
                                       {scene.framed_point},
                                       scene.graph.make(ir::Op::Union, ir::Type::Float, distances)});
-        found = ir::hull(found, over_time(scene, together, domain, work));
+        found = ir::hull(found, over_time(scene, together, domain, times, work));
         std::erase_if(left, [&](std::size_t k) {
             return within(parts[k].bounds, found) || std::ranges::binary_search(chosen, k);
         });
@@ -94,15 +95,15 @@ ir::Box of_bounded(ir::Scene &scene, double &work) {
 
 } // namespace
 
-void find_framing(ir::Scene &scene, Diagnostics &diagnostics) {
+void find_framing(ir::Scene &scene, ir::Interval times, Diagnostics &diagnostics) {
     if (scene.camera.given || scene.top_level.empty()) return;
     double work = most_work;
-    scene.framed = of_bounded(scene, work);
+    scene.framed = of_bounded(scene, times, work);
     constexpr double far = cpu::endless_from;
     const ir::Box space{{-far, -far, -far}, {far, far, far}};
     bool endless = false;
     for (const ir::FunctionId part : scene.framed_alone) {
-        const ir::Box box = over_time(scene, part, space, work);
+        const ir::Box box = over_time(scene, part, space, times, work);
         bool inside = true;
         for (std::size_t i = 0; i < 3; ++i)
             inside = inside && (box.empty() || (box.lo[i] > -far / 2 && box.hi[i] < far / 2));
@@ -126,14 +127,14 @@ void find_framing(ir::Scene &scene, Diagnostics &diagnostics) {
             .help("look for an intersection or a difference that leaves nothing over");
 }
 
-void tell_of_view_inside(const ir::Scene &scene, Diagnostics &diagnostics) {
+void tell_of_view_inside(const ir::Scene &scene, double time, Diagnostics &diagnostics) {
     if (scene.top_level.empty() || scene.camera.orthographic) return;
     const ir::Graph &graph = scene.graph;
     if (ir::operations(graph, graph.function(scene.distance).result) > most_operations_inside)
         return;
-    const ir::View view = ir::view_of(scene, 0, 1);
+    const ir::View view = ir::view_of(scene, time, 1);
     const cpu::Program program = cpu::compile(scene, scene.distance);
-    cpu::Scratch scratch = cpu::make_scratch(program, cpu::inputs_of(scene, 0));
+    cpu::Scratch scratch = cpu::make_scratch(program, cpu::inputs_of(scene, time));
     std::array<float, 3> at;
     for (int i = 0; i < 3; ++i)
         at[static_cast<std::size_t>(i)] = static_cast<float>(view.origin[i]);

@@ -7,13 +7,13 @@
 namespace fathom::driver {
 
 // Narrows Scene::framed of a lowered scene whose camera is not given to the box of what has an end,
-// at the params' present values and over the scene's time. Where nothing has one, or there is no
-// solid at all, a note says so and what to write.
-void find_framing(ir::Scene &scene, Diagnostics &diagnostics);
+// at the params' present values and over these times, in seconds. Where nothing has one, or there is
+// no solid at all, a note says so and what to write.
+void find_framing(ir::Scene &scene, ir::Interval times, Diagnostics &diagnostics);
 
 // A note where the view, framed already, begins deep in the solid, at the params' present values and
-// the time 0. Not looked for in a scene of more than `most_operations_inside` operations a point.
+// that time. Not looked for in a scene of more than `most_operations_inside` operations a point.
 constexpr double most_operations_inside = 20'000;
-void tell_of_view_inside(const ir::Scene &scene, Diagnostics &diagnostics);
+void tell_of_view_inside(const ir::Scene &scene, double time, Diagnostics &diagnostics);
 
 } // namespace fathom::driver

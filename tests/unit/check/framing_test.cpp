@@ -139,6 +139,24 @@ TEST_CASE("shapes that share their parts are opened so far and no further") {
     CHECK(made.scene.framed_alone.size() == 1); // of 16,384 places
 }
 
+TEST_CASE("what moves is framed at the moment of a still, and over the frames of a film") {
+    const std::string ball = "sphere(0.5).translate(x: time)\n";
+    const auto at = [](const std::string &text, double first, double last) {
+        driver::CompileOptions options;
+        options.times = {first, last};
+        const auto made = driver::compile_text("scene.sdf", text, "", options);
+        REQUIRE(made.good());
+        CHECK(!told(made));
+        return made.scene.framed;
+    };
+    for (const std::string &text : {ball, ball + "box(1)\n"}) {
+        INFO(text);
+        CHECK(at(text, 6, 6).hi[0] == Approx(6.5).margin(0.1));
+        CHECK(at(text, 0, 12).hi[0] > 11.5); // one of the moments that are looked at
+    }
+    CHECK(at(ball, 6, 6).lo[0] == Approx(5.5).margin(0.1));
+}
+
 TEST_CASE("what cannot be framed is told, and what to write") {
     for (const char *text : {"plane(Y, 0)", "plane(Y, 0) - sphere(1)", "gyroid(1, 0.1)", "slab(1)",
                              "sphere(0.2).repeat(cell: 1)", "sphere(1) & sphere(1).translate(x: 5)",
