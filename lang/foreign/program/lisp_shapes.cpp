@@ -196,7 +196,10 @@ std::optional<Written> Writer::lisp_joined(const std::string &head, const Node &
 std::optional<Written> Writer::lisp_solid(const std::string &name, const Form &f) {
     const auto round = f.named.find("r");
     const std::string axis = f.axes.empty() ? "" : f.axes[0].first;
-    const auto at = [&](std::size_t i) { return lisp_text(*f.rest.at(i)); };
+    const auto at = [&](std::size_t i) {
+        if (i >= f.rest.size()) throw Unsure{};
+        return lisp_text(*f.rest[i]);
+    };
     const auto put = [&](std::string shape, std::size_t i) { // libfive's place
         return f.rest.size() > i ? shape + ".translate(" + at(i) + ")" : shape;
     };
@@ -281,7 +284,10 @@ std::optional<Written> Writer::lisp_change(const std::string &name, const Node &
     for (const auto &[key, given_value] : f.named)
         if (key != "limit" || name != "tile") return std::nullopt;
     const std::size_t count = f.rest.size();
-    const auto at = [&](std::size_t i) { return lisp_text(*f.rest.at(i)); };
+    const auto at = [&](std::size_t i) {
+        if (i >= f.rest.size()) throw Unsure{};
+        return lisp_text(*f.rest[i]);
+    };
     const bool by_axis = name.size() > 2 && name[name.size() - 2] == '-';
     if (by_axis && f.axes.empty() && count == 2) { // libfive's `rotate-x`
         Node same = n;
@@ -367,7 +373,8 @@ void Writer::lisp_statement(const Node &form) {
     if (head.starts_with("set-") || head == "use" || head == "use-modules") return;
     if ((head == "def" || head == "define" || head == "defn") && count >= 3) {
         const bool scheme = form.parts[1].is == Is::List;
-        const Node *named = scheme ? &form.parts[1].parts.at(0) : &form.parts[1];
+        if (scheme && form.parts[1].parts.empty()) throw Unsure{}; // `(define () …)`
+        const Node *named = scheme ? &form.parts[1].parts[0] : &form.parts[1];
         if (named->is != Is::Name || count != (head == "defn" ? 4u : 3u)) throw Unsure{};
         std::string name = named->text;
         std::ranges::replace(name, '-', '_');

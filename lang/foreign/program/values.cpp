@@ -285,7 +285,8 @@ Written Writer::mathematics(const std::string &theirs, const Node &n) {
                 Kind::Number};
     if ((theirs == "array" || theirs == "asarray") && arguments.size() == 1)
         return value(n.parts[1]);
-    if ((theirs == "radians" || theirs == "degToRad") && n.parts[1].is == Is::Number)
+    if ((theirs == "radians" || theirs == "degToRad") && arguments.size() == 1 &&
+        n.parts[1].is == Is::Number)
         return {arguments[0] + "deg", as_call, Kind::Number};
     if (theirs == "degToRad") return {call_text("radians", arguments), as_call, Kind::Number};
     if (theirs == "arange" && arguments.size() == 1)
