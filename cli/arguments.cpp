@@ -552,7 +552,7 @@ std::string in_our_words(Reader &reader, const CLI::ParseError &error) {
     if (!lacks && !dynamic_cast<const CLI::ExtrasError *>(&error)) return said;
     const std::vector<CLI::App *> chosen = reader.app.get_subcommands();
     CLI::App &app = chosen.empty() ? reader.app : *chosen.front();
-    std::vector<std::string> left = app.remaining();
+    std::vector<std::string> left = reader.app.remaining(true);
     if (left.empty() && !lacks) { // CLI11 lists them from the last
         std::istringstream words(rest);
         for (std::string word; words >> word;) left.insert(left.begin(), word);

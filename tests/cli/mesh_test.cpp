@@ -277,7 +277,8 @@ TEST_CASE("several scenes are each a file by their name") {
                       "--resolution 8 --json");
     CHECK(made.exit == 1);
     CHECK(contains(made.err, "unknown-name"));
-    CHECK(made.out.starts_with("{\"scene\":\"ball.sdf\",\"file\":\"out ball.obj\",\"status\":"));
+    CHECK(made.out.starts_with("{\"ok\":false")); // a document for each
+    CHECK(contains(made.out, "\n{\"scene\":\"ball.sdf\",\"file\":\"out ball.obj\",\"status\":"));
     CHECK(contains(folder.read("out ball.obj"), "\no ball\n"));
     CHECK((fs::exists(folder / "out cube {}.obj") && fs::exists(folder / "out cube {}.mtl")));
     CHECK_FALSE(fs::exists(folder / "out wrong.obj"));
