@@ -355,9 +355,7 @@ Derived Prover::know_leaf(ShapeId id) {
     k.fact.kind = FieldKind::Bound;
     k.fact.moment_arm = {infinity, infinity, infinity};
     if (shape.dims == 2) k.fact.bounds.lo[2] = k.fact.bounds.hi[2] = 0;
-    if (place(id).mirrored)
-        k.fact.symmetric = {true, true, true};
-    else if (const auto tape = tape_of(shape.args[0]); !tape->too_large)
+    if (const auto tape = tape_of(shape.args[0]); !tape->too_large)
         for (std::size_t axis = 0; axis < 3; ++axis) {
             std::array<bool, 3> across{};
             across[axis] = true;

@@ -84,17 +84,15 @@ Zone Prover::zone_of(const ir::Region &region) {
     return zone;
 }
 
-void Prover::visit(ShapeId id, const Box &box, const Zone *zone, bool reported, bool mirrored) {
+void Prover::visit(ShapeId id, const Box &box, const Zone *zone, bool reported) {
     Place &place = places[id.index];
     if (!place.reached) {
         place.box = box;
         place.zone = zone;
-        place.mirrored = mirrored;
     } else {
         place.box = ir::hull(place.box, box);
         if (place.zone != zone) place.zone = nullptr;
         place.shared = true;
-        place.mirrored = place.mirrored && mirrored;
     }
     place.reached = true;
     place.reported = place.reported || reported;
@@ -140,9 +138,7 @@ void Prover::find_places() {
             case ShapeKind::Library: {
                 const ir::Library &library = scene.shapes.libraries[shape.payload];
                 bool taken = library.has_claims && library.claims.lipschitz;
-                const auto &across = library.claims.symmetric;
-                visit(child, here.box, here.zone, here.reported && !taken,
-                      library.has_claims && across[0] && across[1] && across[2]);
+                visit(child, here.box, here.zone, here.reported && !taken);
                 break;
             }
             case ShapeKind::Empty:

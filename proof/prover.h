@@ -23,7 +23,6 @@ struct Place {
     const Zone *zone =
         nullptr; // the region, where there is one use and it is the shape's own space
     bool shared = false;
-    bool mirrored = false; // each who asks states that it is symmetric across all three planes
 };
 
 // What helps where a bound of a field of one's own is not proved.
@@ -80,8 +79,7 @@ struct Prover {
 
     // -- places, from the root down
     void find_places();
-    void visit(ir::ShapeId child, const Box &box, const Zone *zone, bool reported,
-               bool mirrored = false);
+    void visit(ir::ShapeId child, const Box &box, const Zone *zone, bool reported);
 
     // -- rules, from the leaves up; each returns all that it found
     Derived of_child(const ir::Shape &shape) const; // what a rule about the first child begins with
