@@ -96,7 +96,7 @@ TapePtr tape_in(Evaluator &evaluator, cpu::Boxes &boxes, const TapePtr &tape, co
         for (std::size_t k = 0; k < boxes.count; ++k)
             boxes.lo[i][k] = box.lo[i], boxes.hi[i][k] = box.hi[i];
     ranges_over(evaluator, *tape, boxes);
-    return shortened(evaluator, tape, 0);
+    return shortened_in_first(evaluator, tape);
 }
 
 // What is found of the surface in a leaf.

@@ -59,7 +59,8 @@ Field::Field(const ir::Scene &scene, double time, const std::optional<ir::Box> &
 
 Evaluator::Evaluator(const Field &of)
     : field(of), values(cpu::make_scratch(of.program, of.inputs)),
-      gradients(cpu::make_gradient_scratch(of.program, of.inputs)), ranges(of.parts) {}
+      gradients(cpu::make_gradient_scratch(of.program, of.inputs)), ranges(of.parts),
+      made(cpu::max_boxes) {}
 
 void values_at(Evaluator &evaluator, const cpu::ShortTape &tape, const Points &points,
                std::vector<float> &out) {
@@ -139,13 +140,24 @@ void ranges_where(Evaluator &evaluator, const cpu::ShortTape &tape, const cpu::B
 
 bool is_short(const cpu::ShortTape &tape) { return tape.cost <= short_enough; }
 
-TapePtr shortened(Evaluator &evaluator, const TapePtr &tape, std::size_t box) {
-    if (is_short(*tape)) return tape;
+std::array<TapePtr, cpu::max_boxes> shortened(Evaluator &evaluator, const TapePtr &tape,
+                                              std::uint64_t which) {
+    std::array<TapePtr, cpu::max_boxes> made;
+    const bool all = is_short(*tape);
     const Field &field = evaluator.field;
-    cpu::shorten(field.parts, evaluator.ranges, tape->selection(field.parts), box, false,
-                 evaluator.made);
-    if (evaluator.made.cost > 0.9f * tape->cost) return tape;
-    return std::make_shared<const cpu::ShortTape>(evaluator.made);
+    if (!all)
+        cpu::shorten(field.parts, evaluator.ranges, tape->selection(field.parts), which, 0,
+                     evaluator.made);
+    for (std::size_t box = 0; box < made.size(); ++box) {
+        if ((which >> box & 1) == 0) continue;
+        const bool pays = !all && !(evaluator.made[box].cost > 0.9f * tape->cost);
+        made[box] = pays ? std::make_shared<const cpu::ShortTape>(evaluator.made[box]) : tape;
+    }
+    return made;
+}
+
+TapePtr shortened_in_first(Evaluator &evaluator, const TapePtr &tape) {
+    return shortened(evaluator, tape, 1)[0];
 }
 
 } // namespace fathom::mesh

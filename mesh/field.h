@@ -50,8 +50,8 @@ struct Evaluator {
     cpu::Scratch values;
     cpu::GradientScratch gradients;
     cpu::Shortener ranges;
-    cpu::ShortTape made;
-    Points points; // of boxes that are points, and their values
+    std::vector<cpu::ShortTape> made; // by box
+    Points points;                    // of boxes that are points, and their values
     std::vector<float> point_values;
 };
 
@@ -79,9 +79,11 @@ struct Held {
 // their ranges.
 void ranges_where(Evaluator &evaluator, const cpu::ShortTape &tape, const cpu::Boxes &boxes,
                   const std::vector<Held> &held);
-// After ranges_over, with the same tape: a tape that holds in one of the boxes; the same one where a
-// shorter one does not pay, as never where it is short.
+// After ranges_over, with the same tape: a tape that holds in one of the boxes, for each of `which`, a
+// bit each; the same one where a shorter one does not pay, as never where it is short.
 bool is_short(const cpu::ShortTape &tape);
-TapePtr shortened(Evaluator &evaluator, const TapePtr &tape, std::size_t box);
+std::array<TapePtr, cpu::max_boxes> shortened(Evaluator &evaluator, const TapePtr &tape,
+                                              std::uint64_t which);
+TapePtr shortened_in_first(Evaluator &evaluator, const TapePtr &tape); // of the boxes
 
 } // namespace fathom::mesh

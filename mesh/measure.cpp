@@ -205,7 +205,7 @@ TapePtr tape_of(Splitter &splitter, const Octree &octree, const Cell &leaf, cons
         for (std::size_t i = 0; i < 3; ++i)
             boxes.lo[i][k] = piece.lo[i], boxes.hi[i][k] = piece.hi[i];
     ranges_over(splitter.evaluator, *tape, boxes);
-    return shortened(splitter.evaluator, tape, 0);
+    return shortened_in_first(splitter.evaluator, tape);
 }
 
 Piece piece_of(const Lattice &lattice, const Cell &leaf) {

@@ -68,13 +68,15 @@ std::vector<Branch> divide_top(Octree &octree, const Field &field, const OctreeS
                 divider.boxes.count = 16;
                 put_parts(octree.lattice, branch.cell.at, level, 0, divider.boxes);
                 ranges_over(divider.evaluator, *branch.tape, divider.boxes);
+                std::uint64_t open = 0;
                 for (std::size_t k = 0; k < 8; ++k) {
                     made[number].space[k] =
                         space_of(divider.evaluator, k, half_way, octree.lattice.ulp,
                                  settings.trusts_bounds, true);
-                    if (made[number].space[k] == Space::Open)
-                        made[number].tapes[k] = shortened(divider.evaluator, branch.tape, k);
+                    if (made[number].space[k] == Space::Open) open |= std::uint64_t{1} << k;
                 }
+                const auto tapes = shortened(divider.evaluator, branch.tape, open);
+                std::copy_n(tapes.begin(), 8, made[number].tapes.begin());
             });
         if (progress.cancelled) return {};
         std::vector<Branch> below;

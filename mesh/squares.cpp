@@ -237,16 +237,21 @@ Squares find_squares(const Plane2 &plane, Evaluator &evaluator) {
                 };
                 for (std::size_t k = 0; k < parts.size(); ++k) boxes.put(k, rectangle(parts[k]));
                 boxes.run(parts.size(), *tile.tape);
+                std::uint64_t apart_in = 0; // of the first eight
                 for (std::size_t k = 0; k < parts.size(); ++k) {
                     const Rectangle r = rectangle(parts[k]);
                     const Space space = boxes.space(k, half_diagonal_of(r));
                     if (space == Space::Inside) squares.inside += area_of(r);
                     if (space != Space::Open) continue;
-                    if (apart) // after the run, in which it is box k of the first eight
-                        below.push_back({shortened(evaluator, tile.tape, k), {parts[k]}});
+                    if (apart)
+                        apart_in |= std::uint64_t{1} << k;
                     else
                         open.push_back(parts[k]);
                 }
+                if (apart_in == 0) continue;
+                const auto tapes = shortened(evaluator, tile.tape, apart_in);
+                for (std::size_t k = 0; k < parts.size(); ++k)
+                    if (tapes[k]) below.push_back({tapes[k], {parts[k]}});
             }
             if (!apart && !open.empty()) below.push_back({tile.tape, std::move(open)});
         }

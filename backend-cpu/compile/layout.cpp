@@ -186,12 +186,25 @@ class LayoutMaker {
         }
     }
 
+    // In a chain of minima or blends each link is then written where the one before it stood, and
+    // is no copy where that one wins (shorten.h).
+    void prefer(const Instruction &kernel) {
+        if (kernel.in.empty() || code_.values[kernel.out].shared) return;
+        const Value first = kernel.in[0];
+        const ValueInfo &info = code_.values[first];
+        if (info.source != ValueInfo::no_source || info.shared) return;
+        const auto place = std::ranges::find(free_registers_.rbegin(), free_registers_.rend(),
+                                             layout_.slot[root_[first.index].index]);
+        if (place != free_registers_.rend()) std::swap(*place, free_registers_.back());
+    }
+
     void allocate(const Order &block) {
         for (InstructionId id : block.instructions) {
             const Instruction &instruction = code_.instructions[id];
             std::uint32_t here = at_.at(id);
             // A kernel may write where it reads; what copies in and out may not.
             release(instruction.kind == InstructionKind::Kernel ? here : here - 1);
+            if (instruction.kind == InstructionKind::Kernel) prefer(instruction);
             if (instruction.kind != InstructionKind::Loop) {
                 for (std::uint32_t k = 0; k < instruction.outs; ++k)
                     place(Value{instruction.out.index + k});

@@ -99,6 +99,29 @@ std::size_t unknown_of(const Pruning &pruning, CellEvaluator &evaluator, const B
                     tape.selection(pruning.parts), unknown);
 }
 
+bool is_far(const Pruning &pruning, const CellEvaluator &evaluator, std::size_t box, bool exact,
+            float half_diagonal) {
+    return pruning.settings.far_cells && !exact &&
+           evaluator.shortener.result_lo[box] >= pruning.settings.far * half_diagonal;
+}
+
+// The tapes of the boxes that are not far, from that of `from`, into evaluator.tapes. A Cut by which
+// too many points of a box are unknown is taken back.
+void shorten_all(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
+                 const PruneCell &from, bool exact, float half_diagonal) {
+    run_over(pruning.parts, evaluator.shortener, from.tape, boxes);
+    std::uint64_t near = 0, again = 0;
+    for (std::size_t k = 0; k < boxes.count; ++k)
+        if (!is_far(pruning, evaluator, k, exact, half_diagonal)) near |= std::uint64_t{1} << k;
+    std::vector<ShortTape> &tapes = evaluator.tapes;
+    shorten(pruning.parts, evaluator.shortener, from.tape, near, near, tapes);
+    for (std::size_t k = 0; k < boxes.count; ++k)
+        if ((near >> k & 1) != 0 && tapes[k].cut &&
+            unknown_of(pruning, evaluator, boxes, k, tapes[k]) > tried_points / 2)
+            again |= std::uint64_t{1} << k;
+    if (again != 0) shorten(pruning.parts, evaluator.shortener, from.tape, again, 0, tapes);
+}
+
 bool has_cut(const Selection &tape) {
     return std::ranges::any_of(tape.loops, [](const auto &rows) { return rows.cut.any(); });
 }
@@ -118,25 +141,22 @@ int fill(const Pruning &pruning, CellEvaluator &evaluator, const Boxes &boxes,
     };
     std::array<Piece, max_boxes + 1> pieces{};
     int unknown = 0;
-    ShortTape &tape = evaluator.tape;
+    std::vector<ShortTape> &tapes = evaluator.tapes;
     Packer packer(pruning.parts);
     for (std::size_t k = 0; k < max_boxes; ++k) {
         const std::size_t box = k % at_once; // of those that were run over
         if (box == 0)
-            run_over(pruning.parts, evaluator.shortener, from.tape, part_of(boxes, k, at_once));
+            shorten_all(pruning, evaluator, part_of(boxes, k, at_once), from, exact, half_diagonal);
+        ShortTape &tape = tapes[box];
         PruneCell &made = block.cells[k];
         made.above = &cell;
         made.level = static_cast<std::int8_t>(level + 1);
         pieces[k] = {block.steps.size(), block.loops.size(), block.packed.size()};
-        const float minimum = evaluator.shortener.result_lo[box];
-        if (pruning.settings.far_cells && !exact &&
-            minimum >= pruning.settings.far * half_diagonal) {
-            made.far = minimum; // where exact values are wanted, the cell above computes them
+        if (is_far(pruning, evaluator, box, exact, half_diagonal)) {
+            // where exact values are wanted, the cell above computes them
+            made.far = evaluator.shortener.result_lo[box];
             continue;
         }
-        shorten(pruning.parts, evaluator.shortener, from.tape, box, true, tape);
-        if (tape.cut && unknown_of(pruning, evaluator, boxes, k, tape) > tried_points / 2)
-            shorten(pruning.parts, evaluator.shortener, from.tape, box, false, tape);
         if (!tape.cut && has_cut(tape.selection(pruning.parts)))
             unknown += unknown_of(pruning, evaluator, boxes, k, tape) > 1;
         const bool is_long = tape.steps.size() > pruning.settings.long_tape;
@@ -273,8 +293,9 @@ Pruning::Pruning(const Program &p, const Inputs &inputs, const Cube &c, const Pr
 Pruning::~Pruning() { remove(root.below.load()); }
 
 CellEvaluator::CellEvaluator(const Pruning &pruning, const Inputs &inputs)
-    : shortener(pruning.parts), scratch(make_scratch(pruning.program, inputs)), in(3),
-      out(pruning.program.results.size()), parted(static_cast<std::size_t>(pruning.finest) + 1) {}
+    : shortener(pruning.parts), tapes(max_boxes), scratch(make_scratch(pruning.program, inputs)),
+      in(3), out(pruning.program.results.size()),
+      parted(static_cast<std::size_t>(pruning.finest) + 1) {}
 
 const PruneCell &cell_at(const Pruning &pruning, CellEvaluator &evaluator, float x, float y,
                          float z) {

@@ -81,7 +81,7 @@ struct Pruning {
 struct CellEvaluator {
     CellEvaluator(const Pruning &pruning, const Inputs &inputs);
     Shortener shortener;
-    ShortTape tape; // of the cell in the making
+    std::vector<ShortTape> tapes; // of the cells in the making
     Scratch scratch;
     struct Tally {
         std::uint64_t far = 0, near = 0, outside = 0; // points: outside of the cube

@@ -421,7 +421,7 @@ Shortener::Shortener(const PruneProgram &parts) {
     lo.resize(program.cells + batch_size);
     hi.resize(program.cells + batch_size);
     live.resize(parts.slot_count);
-    cutoff.resize(parts.slot_count);
+    cutoff.resize((parts.slot_count - program.first_register) * max_boxes);
     using Kind = Program::Shared::Kind;
     for (const Program::Shared &shared : program.shared) {
         double value = 0;

@@ -11,6 +11,7 @@
 #include "backend-cpu/tape.h"
 
 #include <array>
+#include <span>
 
 namespace fathom::cpu {
 
@@ -117,8 +118,13 @@ struct Shortener {
     std::vector<LoopRun> loop_runs;
     std::vector<std::uint32_t> listed; // by box of a loop: iterations that may change something
     std::vector<std::uint32_t> kept;   // iterations of the loop at hand, from the last
-    std::vector<std::uint32_t> live;   // by slot: the epoch for which it is
-    std::vector<float> cutoff;         // by slot: its value matters as far as it is not above this
+    struct Live {
+        std::uint64_t boxes = 0;   // in which the value matters
+        std::uint64_t bounded = 0; // of these: as far as it is not above its cutoff
+        std::uint32_t epoch = 0;   // for which this is
+    };
+    std::vector<Live> live;    // by slot
+    std::vector<float> cutoff; // by register and box
     std::uint32_t epoch = 0;
     std::size_t boxes = 0;
     std::array<float, max_boxes> result_lo{}, result_hi{}; // of the first result, by box
@@ -129,14 +135,14 @@ struct Shortener {
 void enter_boxes(const PruneProgram &parts, Shortener &shortener, const Boxes &boxes);
 void run_steps(const PruneProgram &parts, Shortener &shortener, const Selection &steps);
 void take_results(const PruneProgram &parts, Shortener &shortener);
-// First what a tape that holds in all boxes comes to in each, then, box by box, what of it is left.
+// First what a tape that holds in all boxes comes to in each, then what of it is left in some.
 void run_over(const PruneProgram &parts, Shortener &shortener, const Selection &from,
               const Boxes &boxes);
 // What the tape comes to alone: no tape is shortened by it.
 void run_values(const PruneProgram &parts, Shortener &shortener, const Selection &from,
                 const Boxes &boxes);
-// False for `cuts`: no Cut but those that the tape had.
+// Into tapes[box] for each of `boxes`, a bit each. Not in `cuts`: no Cut but those that the tape had.
 void shorten(const PruneProgram &parts, Shortener &shortener, const Selection &from,
-             std::size_t box, bool cuts, ShortTape &tape);
+             std::uint64_t boxes, std::uint64_t cuts, std::span<ShortTape> tapes);
 
 } // namespace fathom::cpu
