@@ -241,8 +241,9 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
                         : Box::everything();
     frame.boxed = all.finite();
     if (frame.boxed) {
-        // Not flush with flat faces, on which a ray would graze its own entry.
-        const double margin = 1e-3 * radius;
+        // Not flush with flat faces, on which a ray would graze its own entry; and so wide that rays
+        // which pass a needle by less than a pixel are marched and found CLOSE (shading.h).
+        const double margin = 0.02 * radius;
         frame.lo = vec_of(all.lo) - margin;
         frame.hi = vec_of(all.hi) + margin;
     }

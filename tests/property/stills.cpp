@@ -309,6 +309,19 @@ TEST_CASE("what is thinner than a pixel is not lost between the samples") {
     CHECK(rows(with) > high * 9 / 10);
 }
 
+TEST_CASE("a needle that is alone is not lost between the samples") {
+    // its box is thinner than a pixel, too: hardly a ray meets that
+    const cpu::Picture picture = drawn("background(white)\ncylinder(0.02, 20).paint(black)\n", 0);
+    int rows = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            if (byte(picture, x, y, 0) < 255) {
+                ++rows;
+                break;
+            }
+    CHECK(rows > height * 3 / 4);
+}
+
 TEST_CASE("where a cut ends in the face of what it cuts, or a little beyond, nothing is drawn or "
           "shades") {
     const std::string light = camera + "plane(Y, -1.3)\nsun(direction: [0.5, 0.8, 0.3])\n";
