@@ -66,7 +66,8 @@ struct ShapeFact {
     double inward = std::numeric_limits<double>::infinity();  // … and inward
     std::vector<PartialSum> partial; // Displace: shorter sums first, all of it last; or none
     // Displace: M, an upper bound of the raw field's second derivative along any line, down to the
-    // depth that the safe radius sqrt(2 f/M) needs (shading.h); infinity: none of use.
+    // depth that the safe radius sqrt(2 f/M) needs (shading.h); infinity: none of use. Else 0 where
+    // the field is affine in the point, as a plane's.
     double curvature = std::numeric_limits<double>::infinity();
     bool local = false; // the bound holds within `bounds` alone: the raw field is evaluated at the
                         // nearest point there, and joined with the way to it as Within's is

@@ -241,11 +241,14 @@ Frame frame_of(const Scene &scene, const View &view, int height) {
                         : Box::everything();
     frame.boxed = all.finite();
     if (frame.boxed) {
-        // Not flush with flat faces, on which a ray would graze its own entry; and so wide that rays
-        // which pass a needle by less than a pixel are marched and found CLOSE (shading.h).
-        const double margin = 0.02 * radius;
-        frame.lo = vec_of(all.lo) - margin;
-        frame.hi = vec_of(all.hi) + margin;
+        frame.lo = vec_of(all.lo), frame.hi = vec_of(all.hi);
+        // Not flush with flat faces, on which a ray would graze its own entry; and not so thin that
+        // rays which pass a needle by less than a pixel are not found CLOSE (shading.h).
+        for (int i = 0; i < 3; ++i) {
+            const double half = (frame.hi[i] - frame.lo[i]) / 2,
+                         margin = std::max(1e-3 * radius, 0.03 * radius - half);
+            frame.lo[i] -= margin, frame.hi[i] += margin;
+        }
     }
     frame.unit_slope = scene.unit_slope;
     frame.exact = scene.exact;

@@ -98,12 +98,15 @@ double Prover::core_of_leaf(NodeId field) {
     if (tape.too_large) return -infinity;
     Machine machine(tape, ranges, true);
     machine.run(Cell{});
+    if (tape.size[tape.result] == 1 && machine.bend(tape.result) == 0 &&
+        machine.norm(tape.result) < infinity)
+        return infinity;
     return Distance{tape, machine}.core();
 }
 
 // c, where the raw field f has f'' <= 1/(f + c) along lines wherever f > -c: the distance to a
-// closed set, less c, as the distance is the least of those to the set's points. -infinity:
-// unknown.
+// closed set, less c, as the distance is the least of those to the set's points. Infinity: what is
+// affine in the point, as a plane is. -infinity: unknown.
 double Prover::core_of(ShapeId id, int depth) {
     if (depth > 32 || of(id).fact.local) return -infinity;
     if (const auto found = cores.find(id); found != cores.end()) return found->second;
@@ -159,6 +162,8 @@ double Prover::core_made(ShapeId id, int depth) {
 // dips deeper is as long as L says. M grows with D, so there is one least D.
 double Prover::curvature_of(ShapeId id, const Derived &k) {
     const Shape shape = scene.shapes[id];
+    if (shape.kind == ShapeKind::Leaf || shape.kind == ShapeKind::Library)
+        return !k.failed && core_of(id) == infinity ? 0 : infinity;
     if (shape.kind != ShapeKind::Displace || k.failed || k.fact.local ||
         !std::isfinite(k.fact.inward))
         return infinity;
@@ -167,7 +172,7 @@ double Prover::curvature_of(ShapeId id, const Derived &k) {
     const double bent = bend(shape.args[0], place(id).box);
     if (!std::isfinite(bent)) return infinity;
     const auto at = [&](double depth) { return up(bent + 1 / (room - depth), 8); };
-    double low = 0, high = room;
+    double low = 0, high = std::isfinite(room) || bent == 0 ? room : up(slope * slope / bent, 8);
     for (int i = 0; i < 40; ++i) {
         const double depth = (low + high) / 2;
         (depth >= up(slope * slope / (2 * at(depth)), 8) ? high : low) = depth;

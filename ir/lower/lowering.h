@@ -71,6 +71,7 @@ class Lowering {
 
     // -- safe radius (safe_radius.cpp)
     bool passes_safe_radius_on(const Shape &shape) const;
+    bool is_straight(ShapeId id) const;
     void find_curved();
     NodeId both(NodeId distance);
     NodeId safe_radius(ShapeId id, Where frame);

@@ -8,11 +8,20 @@
 
 namespace fathom::ir {
 
+namespace {
+constexpr double endless = 1e9; // a safe radius without an end, whose square is a float
+}
+
 // Whether the shape's own combination hands its children's safe radius on. Folds do not: a mirror
 // may bend a field upward sharply. Intersections would need more than the smaller radius.
 bool Lowering::passes_safe_radius_on(const Shape &s) const {
     if (s.kind == ShapeKind::Map) return s.map == MapKind::Translate || s.map == MapKind::Rotate;
     return s.kind == ShapeKind::Union || is_transparent(s, shapes_);
+}
+
+// Affine in the point: between two samples outside, however far apart, nothing lies.
+bool Lowering::is_straight(ShapeId id) const {
+    return shape(id).kind != ShapeKind::Displace && fact(id).curvature == 0 && !has_cells(id);
 }
 
 void Lowering::find_curved() {
@@ -21,6 +30,7 @@ void Lowering::find_curved() {
         const Shape &s = shape(ShapeId{i});
         curved_[i] = s.kind == ShapeKind::Displace && std::isfinite(fact(ShapeId{i}).curvature) &&
                      std::isfinite(fact(ShapeId{i}).outward);
+        curved_[i] |= is_straight(ShapeId{i});
         curved_[i] |= s.kind == ShapeKind::Within && has_cells(ShapeId{i}) &&
                       !scene_.cells.at(ShapeId{i}).bend.empty();
         if (!passes_safe_radius_on(s)) continue;
@@ -36,7 +46,10 @@ NodeId Lowering::safe_radius(ShapeId id, Where frame) {
     const Shape &s = shape(id);
     if (!curved_[id.index]) return both(expression_of(Reading::Marched, id, frame));
     NodeId value;
-    if (s.kind == ShapeKind::Displace) {
+    if (is_straight(id)) {
+        value = graph_.make(Op::Make, Type::Vec2,
+                            {expression_of(Reading::Marched, id, frame), graph_.number(endless)});
+    } else if (s.kind == ShapeKind::Displace) {
         value = displaced(Reading::SafeRadius, id, frame);
     } else if (s.kind == ShapeKind::Within) {
         const NodeId distance = expression_of(Reading::Marched, id, frame);

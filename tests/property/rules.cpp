@@ -334,6 +334,11 @@ std::vector<Case> bends() {
                        return s.add(ShapeKind::Displace, {s.sphere(2)}, {waves(s, 0.1, 12)});
                    },
                    0, 2.3});
+    out.push_back({"waves on a plane", Rule::Curvature,
+                   [waves](Scenery &s) {
+                       return s.add(ShapeKind::Displace, {s.leaf(s.y)}, {waves(s, 0.1, 12)});
+                   },
+                   0, 2.3});
     // The sphere's own, which a displacement by its own height adds little to.
     out.push_back({"a small sphere, hardly displaced", Rule::Curvature,
                    [waves](Scenery &s) {

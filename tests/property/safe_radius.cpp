@@ -54,11 +54,51 @@ ir::Scene by_reach(ir::Scene scene) {
     return scene;
 }
 
+struct Counts {
+    int rays = 0, steps = 0, plain_steps = 0;
+};
+
+// Each ray of a picture lands where a march at a tenth of the ball's step lands.
+void check_rays(const ir::Scene &scene, Counts &counts) {
+    constexpr int side = 40;
+    const cpu::Stage stage = cpu::prepare(scene, ir::view_of(scene, 0, 1), side, side, 0);
+    REQUIRE(stage.has_safe_radius);
+    ir::Scene without = scene;
+    without.safe_radius = {};
+    const cpu::Stage plain = cpu::prepare(without, stage.view, side, side, 0);
+    std::vector<cpu::Ray> rays;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+            rays.push_back(cpu::eye_ray(stage, float(x) + 0.5f, float(y) + 0.5f));
+    const auto fast = cpu::cast(stage, rays), slow = cpu::cast(stage, rays, true),
+               ball = cpu::cast(plain, rays);
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+        ++counts.rays, counts.steps += fast[k].steps, counts.plain_steps += ball[k].steps;
+        if (slow[k].t < 0 && fast[k].t < 0) continue;
+        // Grazing: within a pixel of one that lands otherwise.
+        if ((slow[k].t >= 0) == (fast[k].t >= 0) && fast[k].t <= slow[k].t + 0.01f * slow[k].t)
+            continue;
+        std::vector<cpu::Ray> near;
+        for (int j = 0; j < 16; ++j) {
+            const float a = float(j) * 0.3927f;
+            near.push_back(cpu::eye_ray(stage, float(k % side) + 0.5f + 0.5f * std::cos(a),
+                                        float(k / side) + 0.5f + 0.5f * std::sin(a)));
+        }
+        bool grazing = false;
+        for (const cpu::Landing &l : cpu::cast(stage, near, true))
+            grazing = grazing ||
+                      ((l.t >= 0) == (fast[k].t >= 0) && (l.t < 0 || fast[k].t <= l.t * 1.01f));
+        INFO("pixel " << k % side << ", " << k / side << ": " << fast[k].t << " and " << slow[k].t);
+        CHECK(grazing);
+    }
+}
+
 } // namespace
 
 TEST_CASE("the ball of the safe radius is free, and no ray passes a surface") {
     test::Dice dice{41};
-    int curved = 0, segments = 0, cast = 0, steps = 0, plain_steps = 0;
+    int curved = 0, segments = 0;
+    Counts counts;
     for (int i = 0; i < 60; ++i) {
         const std::string text = rough_scene(dice);
         INFO(text);
@@ -72,43 +112,57 @@ TEST_CASE("the ball of the safe radius is free, and no ray passes a surface") {
         CHECK(spans.cut == 0);
         CHECK(spans.shorter == 0);
 
-        constexpr int side = 40;
-        const cpu::Stage stage = cpu::prepare(c.scene, ir::view_of(c.scene, 0, 1), side, side, 0);
-        REQUIRE(stage.has_safe_radius);
-        ir::Scene without = c.scene;
-        without.safe_radius = {};
-        const cpu::Stage plain = cpu::prepare(without, stage.view, side, side, 0);
-        std::vector<cpu::Ray> rays;
-        for (int y = 0; y < side; ++y)
-            for (int x = 0; x < side; ++x)
-                rays.push_back(cpu::eye_ray(stage, float(x) + 0.5f, float(y) + 0.5f));
-        const auto fast = cpu::cast(stage, rays), slow = cpu::cast(stage, rays, true),
-                   ball = cpu::cast(plain, rays);
-        for (std::size_t k = 0; k < rays.size(); ++k) {
-            ++cast, steps += fast[k].steps, plain_steps += ball[k].steps;
-            if (slow[k].t < 0 && fast[k].t < 0) continue;
-            // Grazing: within a pixel of one that lands otherwise.
-            if ((slow[k].t >= 0) == (fast[k].t >= 0) && fast[k].t <= slow[k].t + 0.01f * slow[k].t)
-                continue;
-            std::vector<cpu::Ray> near;
-            for (int j = 0; j < 16; ++j) {
-                const float a = float(j) * 0.3927f;
-                near.push_back(cpu::eye_ray(stage, float(k % side) + 0.5f + 0.5f * std::cos(a),
-                                            float(k / side) + 0.5f + 0.5f * std::sin(a)));
-            }
-            bool grazing = false;
-            for (const cpu::Landing &l : cpu::cast(stage, near, true))
-                grazing = grazing ||
-                          ((l.t >= 0) == (fast[k].t >= 0) && (l.t < 0 || fast[k].t <= l.t * 1.01f));
-            INFO("pixel " << k % side << ", " << k / side << ": " << fast[k].t << " and "
-                          << slow[k].t);
-            CHECK(grazing);
-        }
+        check_rays(c.scene, counts);
     }
     std::printf("%d scenes, %d segments, %d rays, %.3f of the steps by balls alone\n", curved,
-                segments, cast, double(steps) / plain_steps);
+                segments, counts.rays, double(counts.steps) / counts.plain_steps);
     CHECK(curved > 40);
-    CHECK(steps < 0.8 * plain_steps);
+    CHECK(counts.steps < 0.8 * counts.plain_steps);
+}
+
+// Grounds of all kinds, seen from low over them, and what a long step could pass.
+TEST_CASE("rays skim over what is straight, and pass nothing that stands on it") {
+    test::Dice dice{47};
+    int segments = 0;
+    Counts counts;
+    for (int i = 0; i < 40; ++i) {
+        const auto pick = [&](std::initializer_list<const char *> all) {
+            return std::string(
+                all.begin()[std::min(int(dice.in(0, double(all.size()))), int(all.size()) - 1)]);
+        };
+        const std::string ground =
+            pick({"plane(Y, -0.5)", "plane(Y, -0.5).paint(#668844)", "plane([0.1, 1, -0.2], -0.6)",
+                  "implicit(p => 3 * p.y + 0.4 * p.x + 1.5)",
+                  "plane(Y, -0.5)\nplane(Z, -6)\nplane([1, 0.2, 0.1], -7)",
+                  "plane(Z).rotate(-90deg, axis: X).translate([0, -0.6, 0])",
+                  "param level = -0.5 in -1..0\nplane(Y, level)",
+                  "plane(Y, -0.6).displace(p => 0.1 * noise(1.5 * p))",
+                  "plane(Y, -0.6).displace(p => 0.2 * sin(2 * p.x) * sin(1.7 * p.z))"});
+        const std::string solid =
+            pick({"sphere(0.7)", "box([0.03, 1.2, 0.03])", "box([0.05, 1, 2.5]).rotate(0.4)",
+                  "torus(0.9, 0.02).rotate(1, axis: X)", "cylinder(0.3, 1)",
+                  "box([0.04, 1, 0.04]).repeat([0.7, 0, 0.7], count: [3, 1, 3])",
+                  "sphere(0.6).displace(p => 0.05 * noise(4 * p))"});
+        const std::string text =
+            ground + "\n" + solid + ".translate([" + fmt::format("{:.3f}", dice.in(-0.4, 0.4)) +
+            ", 0, 0.2])\n" +
+            fmt::format("camera(at: [{:.3f}, {:.3f}, 5], look_at: [0, {:.3f}, 0])\n",
+                        dice.in(-3, 3), dice.in(-0.2, 1), dice.in(-0.4, 0.3));
+        INFO(text);
+        driver::Compilation c = driver::compile_text("scene", text, {}, {});
+        REQUIRE(c.good());
+        REQUIRE(c.scene.safe_radius);
+        const test::Spans spans =
+            test::measure_spans(c.scene, {-3, -1.5, -3}, {3, 1.5, 3}, 100'000);
+        segments += spans.tried;
+        CHECK(spans.cut == 0);
+        CHECK(spans.shorter == 0);
+        check_rays(c.scene, counts);
+    }
+    std::printf("%d segments, %d rays, %.3f of the steps by balls alone\n", segments, counts.rays,
+                double(counts.steps) / counts.plain_steps);
+    CHECK(segments > 100'000);
+    CHECK(counts.steps < 0.6 * counts.plain_steps);
 }
 
 // Algebraic surfaces, by bounds in cells: a heart, on which the field has a threefold root along a

@@ -34,6 +34,7 @@ inline Spans measure_spans(const ir::Scene &scene, Point3 lo, Point3 hi, int cou
         return Point3{float(p[0] + h * to[0]), float(p[1] + h * to[1]), float(p[2] + h * to[2])};
     };
     constexpr int between = 24;
+    const double wide = 2 * std::hypot(hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]);
     constexpr double rounding = 1e-5;
     Spans out;
     for (int done = 0; done < count; done += 1024) {
@@ -47,7 +48,7 @@ inline Spans measure_spans(const ir::Scene &scene, Point3 lo, Point3 hi, int cou
             const double size = std::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) + 1e-9;
             for (double &x : u) x /= size;
             to.push_back(u);
-            way.push_back(double(a[1][i]) * (0.5 + 1.7 * sampler.random()));
+            way.push_back(std::min(double(a[1][i]), wide) * (0.5 + 1.7 * sampler.random()));
             q.push_back(on(p[i], u, std::max(way.back(), 0.0)));
             out.shorter += !(a[1][i] >= a[0][i] - 1e-6f) ||
                            std::fabs(known[i] - a[0][i]) > 1e-5f * (1 + std::fabs(known[i]));
