@@ -18,7 +18,7 @@ struct Measures {
     bool used_bound = false;                  // the proved bound, besides intervals
 };
 
-inline constexpr double usual_work = 1.2e9; // kernels over boxes: some seconds
+inline constexpr double usual_work = 0.3e9; // kernels over boxes: a second or two
 
 // By the cells of a mesh of that scene and those settings, which are divided further as far as the
 // work goes.

@@ -52,7 +52,7 @@ void put_object(Text &text, const Surface &mesh, const MaterialTable &table,
     fmt::format_to(to, "o {}\n", word_of(mesh.name));
     for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
         const Point &p = mesh.vertices[k];
-        fmt::format_to(to, "v {} {} {}", p[0], p[1], p[2]);
+        fmt::format_to(to, "v {} {} {}", double(p[0]), double(p[1]), double(p[2]));
         if (!mesh.colors.empty()) // as most readers take them: after the place, sRGB
             for (const float c : mesh.colors[k]) fmt::format_to(to, " {:.4g}", srgb_of_linear(c));
         fmt::format_to(to, "\n");

@@ -93,7 +93,8 @@ void put_object(Text &text, std::size_t id, const Surface &mesh,
     if (colored) fmt::format_to(to, " pid=\"{}\" pindex=\"{}\"", palette, first);
     fmt::format_to(to, ">\n<mesh>\n<vertices>\n");
     for (const Point &p : mesh.vertices)
-        fmt::format_to(to, "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", p[0], 0 - p[2], p[1]);
+        fmt::format_to(to, "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", double(p[0]), 0.0 - p[2],
+                       double(p[1]));
     fmt::format_to(to, "</vertices>\n<triangles>\n");
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         const auto &[a, b, c] = mesh.triangles[t];
