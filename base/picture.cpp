@@ -55,6 +55,25 @@ std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const fl
             if (x + 1 < w) compare(y * w + x, y * w + x + 1);
             if (y + 1 < h) compare(y * w + x, y * w + x + w);
         }
+    // How many of the pixels above and to the left of a corner of pixels differ sharply.
+    std::vector<std::uint32_t> sharp((w + 1) * (h + 1));
+    for (std::size_t y = 0; y < h; ++y)
+        for (std::size_t x = 0, row = 0; x < w; ++x) {
+            row += rough[y * w + x] == 2;
+            sharp[(y + 1) * (w + 1) + x + 1] =
+                sharp[y * (w + 1) + x + 1] + static_cast<std::uint32_t>(row);
+        }
+    const std::size_t around = busy_around;
+    for (std::size_t y = 0; y < h; ++y)
+        for (std::size_t x = 0; x < w; ++x) {
+            const std::size_t left = x - std::min(x, around), top = y - std::min(y, around),
+                              right = std::min(x + around + 1, w),
+                              bottom = std::min(y + around + 1, h);
+            const std::uint32_t found =
+                sharp[bottom * (w + 1) + right] - sharp[top * (w + 1) + right] -
+                sharp[bottom * (w + 1) + left] + sharp[top * (w + 1) + left];
+            if (2 * found > (right - left) * (bottom - top)) rough[y * w + x] = 3;
+        }
     return rough;
 }
 

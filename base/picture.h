@@ -30,8 +30,10 @@ Picture picture_of_linear(int width, int height, std::span<const float> rgba);
 
 // The pixels that one sample does not do for, by how much they differ from one of the four beside
 // them in some channel, encoded 0..1, or in alpha where that counts: 2 above `edge_contrast`, 1 above
-// `rough_contrast`, else 0. Of linear RGBA.
+// `rough_contrast`, else 0; and 3 where most pixels up to `busy_around` beside are 2, as of a pattern
+// that is finer than pixels, where some do not differ by chance. Of linear RGBA.
 inline constexpr float rough_contrast = 0.08f, edge_contrast = 0.2f;
+inline constexpr int busy_around = 3;
 std::vector<std::uint8_t> rough_pixels(int width, int height, std::span<const float> rgba,
                                        bool alpha = false);
 

@@ -323,7 +323,7 @@ inline constexpr std::array<float, 3> background{0.35f, 0.45f, 0.6f};
 inline constexpr std::array<float, 3> sky{1.1f, 1.15f, 1.25f}, soil{0.9f, 0.85f, 0.75f};
 inline constexpr float shoulder = 0.8f;
 inline constexpr float fade_from = 0.3f;
-inline constexpr std::array<int, 3> rough_samples{1, 2, 4}; // of a pixel, by base/picture.h
+inline constexpr std::array<int, 4> rough_samples{1, 2, 4, 8}; // of a pixel, by base/picture.h
 inline constexpr float behind = 8; // pixels: what ends so far behind is another thing
 
 } // namespace fathom::ir::shading

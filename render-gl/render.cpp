@@ -64,7 +64,8 @@ std::vector<Further> further_samples(int width, int height, std::span<const floa
     const std::vector<std::uint8_t> rough = rough_pixels(width, height, rgba);
     std::vector<Further> out;
     for (std::size_t i = 0; i < rough.size(); ++i) {
-        const int samples = ir::shading::rough_samples[close[i] ? 2 : rough[i]];
+        const int samples =
+            ir::shading::rough_samples[std::max<std::size_t>(close[i] ? 2 : 0, rough[i])];
         for (int k = 1; k < samples; ++k) out.push_back({i, k, samples});
     }
     return out;

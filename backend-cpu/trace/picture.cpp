@@ -181,10 +181,11 @@ void draw(Worker &worker, const PictureOptions &options, const Tile &tile, PartP
 class Smooth {
   public:
     Smooth(const Stage &stage, PartPicture &part) : part_(part), area_(part.region) {
-        // Whether a pixel at the edge of the region is rough is told by its neighbour outside.
-        const int left = std::max(area_.x - 1, 0), top = std::max(area_.y - 1, 0),
-                  right = std::min(area_.x + area_.width + 1, stage.width),
-                  bottom = std::min(area_.y + area_.height + 1, stage.height);
+        // How rough a pixel at the edge of the region is is told by its neighbours outside, and theirs.
+        constexpr int beside = busy_around + 1;
+        const int left = std::max(area_.x - beside, 0), top = std::max(area_.y - beside, 0),
+                  right = std::min(area_.x + area_.width + beside, stage.width),
+                  bottom = std::min(area_.y + area_.height + beside, stage.height);
         area_ = {left, top, right - left, bottom - top};
         const auto pixels =
             static_cast<std::size_t>(area_.width) * static_cast<std::size_t>(area_.height);
@@ -208,7 +209,7 @@ class Smooth {
     void find_rough() {
         rough_ = rough_pixels(area_.width, area_.height, first_, part_.options.alpha);
         for (std::size_t i = 0; i < rough_.size(); ++i)
-            if (close_[i]) rough_[i] = 2;
+            if (close_[i]) rough_[i] = std::max<std::uint8_t>(rough_[i], 2);
     }
     void draw_more(Worker &worker, const Tile &tile) {
         Places places;

@@ -269,6 +269,25 @@ TEST_CASE("where one sample does not do there are more, and nowhere else") {
     CHECK(different(one, all) > 3 * different(smooth, all));
 }
 
+TEST_CASE("stripes that are finer than pixels are grey towards the horizon") {
+    const std::string text =
+        "plane(Y).paint(p => if fract(p.x) < 0.5 { white } else { black })\n"
+        "camera(at: [0.3, 0.35, 6], look_at: [0, 0.35, 0])\nlighting(classic: true)\n";
+    const cpu::Picture one = drawn(text), smooth = drawn(text, 0);
+    const auto spread = [&](const cpu::Picture &picture) {
+        double sum = 0, squares = 0;
+        int count = 0;
+        for (int y = height / 2 + 1; y < height / 2 + 4; ++y)
+            for (int x = 0; x < width; ++x, ++count) {
+                const double value = byte(picture, x, y, 1);
+                sum += value, squares += value * value;
+            }
+        return std::sqrt(squares / count - sum * sum / (double(count) * count));
+    };
+    CHECK(spread(one) > 60);
+    CHECK(spread(smooth) < 0.5 * spread(one));
+}
+
 TEST_CASE("where parts meet in one plane their seam is not seen") {
     const std::string light = "camera(at: [3, 4, 5], look_at: [0, 0.3, 0], fov: 25deg)\n"
                               "plane(Y, -0.5)\nsun(direction: [0.5, 0.8, 0.3])\n";

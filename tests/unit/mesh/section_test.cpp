@@ -197,7 +197,7 @@ TEST_CASE("a plane in a face of the solid has the face") {
 
 TEST_CASE("a face that floats hide from the plane ends soon, and claims nothing there") {
     const mesh::Section made =
-        cut("box(1).rotate(0.3, axis: [1, 2, 3]).rotate(-0.3, axis: [1, 2, 3])", 2, 0.5f, 200);
+        cut("box(1).rotate(0.3, axis: [1, 2, 3]).rotate(-0.3, axis: [1, 2, 3])", 2, 0.5f, 80);
     CHECK((made.area.lo <= 1 && made.area.hi >= 0.99));
 }
 
