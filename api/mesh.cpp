@@ -1,9 +1,9 @@
 #include "api/mesh.h"
+#include "api/mesh_advice.h"
 
 #include "mesh/appearance.h"
 #include "mesh/mend.h"
 #include "mesh/simplify.h"
-#include "mesh/thin.h"
 #include "mesh/write.h"
 
 #include <fmt/format.h>
@@ -24,87 +24,6 @@ Mesh without_mesh(MeshStatus status, std::string message) {
     mesh.status = status;
     mesh.message = std::move(message);
     return mesh;
-}
-
-// What shows a wall or a gap of a thickness: a sentence's end.
-std::string shown_by(double thickness, const fathom::mesh::Lattice &lattice, const ir::Box &solid) {
-    constexpr double showing = 1.5; // cells across what is thin
-    const double tolerance = thickness / showing;
-    if (!fathom::mesh::make_lattice(solid, tolerance, 0))
-        return ", thinner than the finest cells of any mesh: make it thicker, or leave it out";
-    double longest = 0;
-    for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, solid.hi[i] - solid.lo[i]);
-    const double now = lattice.side(lattice.level);
-    return fmt::format(", and cells have sides of {:.2g}: a tolerance of {:.2g} shows it, or a "
-                       "resolution of {:.0f}",
-                       now, tolerance, std::ceil(longest / tolerance));
-}
-
-// Of how thick something is at some places, from the least: a sharp edge is as thin as one likes
-// somewhere; of a wall all places tell its thickness.
-double lower_quarter(const std::vector<double> &thick) { return thick[thick.size() / 4]; }
-
-// What would show what lies in some cells, by samples of it: a sentence's end.
-std::string advice_of(const ir::Scene &scene, const fathom::mesh::Settings &settings,
-                      const fathom::mesh::Made &made,
-                      const std::vector<fathom::mesh::Cell> &cells) {
-    fathom::mesh::Progress progress;
-    const fathom::mesh::Lattice &lattice = made.octree.lattice;
-    std::vector<double> thick;
-    std::size_t touch = 0;
-    const fathom::mesh::Field field(scene, settings.time, settings.bounds);
-    const auto found = thin_in(field, lattice, cells, threads_of(settings), progress);
-    for (const fathom::mesh::Thin &thin : found) {
-        if (thin.thickness > 0) thick.push_back(thin.thickness);
-        touch += thin.touches;
-    }
-    if (touch > thick.size())
-        return "parts of the solid touch there, and rounding leaves open where each ends, which no "
-               "finer mesh tells: let them overlap a little, or move them by the same transforms";
-    if (thick.empty()) return "a finer mesh or a tighter bound tells more";
-    std::ranges::sort(thick);
-    return fmt::format("a wall, a gap or a sharp edge there is about {:.2g} thick{}",
-                       lower_quarter(thick), shown_by(lower_quarter(thick), lattice, made.box));
-}
-
-// The same of cells that are drawn: where walls or gaps in many of them are thinner than they are, and
-// where parts that are apart may be drawn as one.
-std::string advice_on_drawn(const ir::Scene &scene, const fathom::mesh::Settings &settings,
-                            const fathom::mesh::Made &made) {
-    constexpr std::size_t looks = 1024;
-    constexpr std::size_t many = 8; // of these, one is thin: no mere edges and points
-    constexpr std::size_t some = 8; // gaps: of one width, more or less, where no groove ends
-    const fathom::mesh::Octree &octree = made.octree;
-    const std::int32_t side = octree.lattice.cells(octree.lattice.level);
-    std::array<std::int32_t, 3> last{-1, -1, -1}; // of a divided drawing cell one part speaks
-    std::vector<fathom::mesh::Cell> cells = open_leaves(octree);
-    std::erase_if(cells, [&](const fathom::mesh::Cell &cell) {
-        if (!octree.nodes[static_cast<std::size_t>(cell.node)].crossed()) return true;
-        const std::array<std::int32_t, 3> drawn{cell.at[0] / side, cell.at[1] / side,
-                                                cell.at[2] / side};
-        return std::exchange(last, drawn) == drawn;
-    });
-    fathom::mesh::Progress progress;
-    const fathom::mesh::Field field(scene, settings.time, settings.bounds);
-    const auto found = thin_in(field, octree.lattice, cells, threads_of(settings), progress, looks);
-    std::vector<double> thin, gaps;
-    for (std::size_t k = 0; k < found.size(); ++k) {
-        const fathom::mesh::Cell &cell = cells[k * cells.size() / found.size()];
-        const double thickness = found[k].thickness;
-        if (!(thickness > 0 && thickness < octree.lattice.side(cell.level))) continue;
-        thin.push_back(thickness);
-        if (found[k].gap) gaps.push_back(thickness);
-    }
-    std::ranges::sort(thin);
-    std::ranges::sort(gaps);
-    if (!thin.empty() && many * thin.size() >= found.size())
-        return fmt::format("walls or gaps may have holes: one is about {:.2g} thick{}",
-                           lower_quarter(thin),
-                           shown_by(lower_quarter(thin), octree.lattice, made.box));
-    if (gaps.size() < some || lower_quarter(gaps) < 0.5 * gaps.back()) return "";
-    return fmt::format("parts that are apart may be drawn as one: a gap is about {:.2g} wide{}",
-                       lower_quarter(gaps),
-                       shown_by(lower_quarter(gaps), octree.lattice, made.box));
 }
 
 Mesh refused(const fathom::mesh::Made &made, const ir::Scene &scene,

@@ -2,9 +2,9 @@
 
 #include "mesh/inquiry.h"
 #include "mesh/measure.h"
+#include "mesh/pieces.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace fathom::mesh {
 namespace {
@@ -88,18 +88,9 @@ void fill(Inquiry &inquiry) {
 } // namespace
 
 Form form_of(const Mesh &mesh) {
-    std::vector<std::uint32_t> parent(mesh.vertices.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root = [&](std::uint32_t v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];
-        return v;
-    };
-    for (const auto &t : mesh.triangles) {
-        parent[root(t[0])] = root(t[1]);
-        parent[root(t[1])] = root(t[2]);
-    }
+    const std::vector<std::uint32_t> pieces = pieces_of(mesh);
     Form form;
-    for (std::uint32_t v = 0; v < parent.size(); ++v) form.components += root(v) == v;
+    for (std::uint32_t v = 0; v < pieces.size(); ++v) form.components += pieces[v] == v;
     // Closed: three edges for two triangles. All vertices are used.
     const long euler =
         static_cast<long>(mesh.vertices.size()) - static_cast<long>(mesh.triangles.size()) / 2;

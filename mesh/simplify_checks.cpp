@@ -2,6 +2,7 @@
 
 #include "mesh/exact.h"
 #include "mesh/nearest.h"
+#include "mesh/pieces.h"
 
 #include <algorithm>
 
@@ -237,19 +238,13 @@ std::optional<std::vector<std::array<std::uint32_t, 2>>> border_of(const Mesh &m
 // Its vertices less its edges and its triangles, and how many pieces it is in.
 std::pair<long, std::size_t> shape_of(const Mesh &mesh) {
     std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
-    std::vector<std::uint32_t> parent(mesh.vertices.size());
-    for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = v;
-    const auto root = [&](std::uint32_t v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];
-        return v;
-    };
     for (const auto &t : mesh.triangles)
-        for (std::size_t k = 0; k < 3; ++k)
-            used[t[k]] = 1, parent[root(t[k])] = root(t[(k + 1) % 3]);
+        for (const std::uint32_t v : t) used[v] = 1;
+    const std::vector<std::uint32_t> piece = pieces_of(mesh);
     long vertices = 0, edges = 0;
     std::size_t pieces = 0;
-    for (std::uint32_t v = 0; v < parent.size(); ++v)
-        if (used[v]) ++vertices, pieces += root(v) == v;
+    for (std::uint32_t v = 0; v < piece.size(); ++v)
+        if (used[v]) ++vertices, pieces += piece[v] == v;
     const std::vector<Side> sides = sides_of(mesh);
     for (std::size_t k = 0; k < sides.size(); ++k)
         edges += k == 0 || sides[k].low != sides[k - 1].low || sides[k].high != sides[k - 1].high;

@@ -84,6 +84,14 @@ TEST_CASE(
             shell(folder, std::string("fathom mesh pin.sdf --resolution 40 -o a.stl") + more).err,
             "parts that are apart may be drawn as one: a gap is about 0.04 wide"));
     CHECK(shell(folder, "fathom mesh pin.sdf --resolution 300 -o a.stl").err.empty());
+    // a splinter before a sharp edge is certified, as a piece of its own; small solids are no splinters
+    folder.write("wedge.sdf", "polygon([[0, 0], [4, 0], [4, 0.7]]).extrude(1)\n");
+    CHECK(
+        contains(shell(folder, "fathom mesh wedge.sdf -o a.stl").err, " cells may hold surface "));
+    CHECK(contains(shell(folder, "fathom mesh wedge.sdf --json -o a.stl").err,
+                   "the mesh has 2 pieces, of which 1 may belong to another: "));
+    folder.write("balls.sdf", "sphere(0.02).repeat([0.3, 0.3, 0.3], count: [3, 3, 3])\n");
+    CHECK(shell(folder, "fathom mesh balls.sdf -o a.stl").err.empty());
 }
 
 TEST_CASE("--simplify writes fewer triangles, and the certificate is of these") {
