@@ -114,7 +114,7 @@ std::vector<NodeId> Agreement::parts(NodeId a, NodeId b) const {
 Interval Agreement::range_of_whole(NodeId rounded) {
     const NodeId of = graph_.arg(rounded, 0);
     const Interval range = pruned_.ranges().of(of);
-    const auto terms = terms_of(graph_, of);
+    const auto terms = terms_of(pruned_.forms(), of);
     const bool is_hash = terms && terms->size() == 1 && terms->front().factors.size() == 1 &&
                          graph_[terms->front().factors[0]].op == Op::Hash &&
                          std::floor(terms->front().by) == terms->front().by;
@@ -282,7 +282,7 @@ bool Agreement::at_least_by_roots(NodeId u, NodeId v, double rounding) {
         NodeId root, rest;
     };
     const auto split = [&](NodeId sum) -> std::optional<Root> {
-        const auto terms = terms_of(graph_, sum);
+        const auto terms = terms_of(pruned_.forms(), sum);
         if (!terms) return {};
         Root out;
         out.rest = graph_.number(0);

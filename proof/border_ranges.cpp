@@ -19,6 +19,7 @@ void Notes::keep(NodeId form, NodeId made) {
 
 Interval SideRanges::of(NodeId id) {
     if (const auto number = graph.as_number(id)) return *number;
+    if (work.spent()) return Interval::everything();
     const auto [it, fresh] = notes.found.try_emplace(id, Interval::everything());
     if (!fresh) return it->second;
     if (const auto given = notes.given.find(id); given != notes.given.end())
@@ -34,7 +35,7 @@ Interval SideRanges::of(NodeId id) {
 Interval SideRanges::found(NodeId id) {
     const Op op = graph[id].op;
     if (graph[id].type == ir::Type::Float && (op == Op::Add || op == Op::Sub)) {
-        const auto terms = terms_of(graph, id);
+        const auto terms = terms_of(forms, id);
         if (!terms) return as_made(id);
         const Interval sum = of_terms(*terms);
         return sum.finite() ? sum : meet(by_rounded(*terms), sum);
@@ -144,7 +145,7 @@ Interval SideRanges::by_rounded(const std::vector<Term> &terms) {
 bool SideRanges::is_wave(NodeId factor) const {
     constexpr ir::OpSet waves{Op::Sin, Op::Cos};
     if (waves[graph[factor].op] || graph[factor].op != Op::Abs) return waves[graph[factor].op];
-    const auto terms = terms_of(graph, graph.arg(factor, 0));
+    const auto terms = terms_of(forms, graph.arg(factor, 0));
     return terms && std::ranges::any_of(*terms, [&](const Term &term) {
                return std::ranges::any_of(term.factors,
                                           [&](NodeId f) { return waves[graph[f].op]; });
@@ -165,7 +166,7 @@ std::optional<Core> SideRanges::core_of(NodeId x, bool from_below, int depth) {
                 if (const auto core = core_of(graph.arg(x, i), true, depth + 1)) return core;
         return {};
     }
-    const auto terms = terms_of(graph, x);
+    const auto terms = terms_of(forms, x);
     if (!terms) return {};
     Interval off(0.0);
     std::vector<Term> rest;
@@ -235,7 +236,7 @@ Interval SideRanges::by_cores(const std::vector<NodeId> &parts, bool greatest) {
 // The greatest number of a sum, whose rounding its range has.
 double SideRanges::size_of_terms(NodeId id) const {
     double size = 0;
-    if (const auto terms = terms_of(graph, id))
+    if (const auto terms = terms_of(forms, id))
         for (const Term &term : *terms)
             if (term.factors.empty()) size = std::max(size, std::fabs(term.by));
     return size;
@@ -267,7 +268,7 @@ bool may_read(const Graph &graph, NodeId root, NodeId coordinate) {
 } // namespace
 
 bool SideRanges::is_sloped(NodeId sum) const {
-    const auto terms = terms_of(graph, sum);
+    const auto terms = terms_of(forms, sum);
     return terms && std::ranges::any_of(*terms, [&](const Term &one) {
                if (one.factors.size() != 1 || !is_coordinate(graph, one.factors[0])) return false;
                return std::ranges::none_of(*terms, [&](const Term &other) {
@@ -280,7 +281,7 @@ bool SideRanges::is_sloped(NodeId sum) const {
 
 // Term by term: where the sum is at the end of its range each term is at one.
 bool SideRanges::is_0_at_ends_alone(NodeId sum, double rounding) {
-    const auto terms = terms_of(graph, sum);
+    const auto terms = terms_of(forms, sum);
     if (!terms) return false;
     bool at_end = false;
     Interval range(0.0);

@@ -41,6 +41,7 @@ struct SideRanges {
     Graph &graph;
     Notes &notes;
     Work &work;
+    Expansion &forms; // of the graph's sums
 
     // What a scalar is between, made of numbers and unknown steps; nothing is known of the point.
     Interval of(NodeId id);

@@ -126,7 +126,7 @@ std::optional<Near> Border::near(NodeId step, int component, int depth) {
     if (is_own(step, component)) return Near{1, half ? 0.5 : 0, sign_of(side)};
     NodeId t = part(moving, step, 0, component, depth);
     if (graph[step].op == Op::Mod) t = graph.div(t, part(moving, step, 1, component, depth));
-    const auto sum = combination(graph, t, std::array{whole, little, little_angle});
+    const auto sum = combination(forms, t, std::array{whole, little, little_angle});
     if (!sum) return {};
     const auto &c = *sum;
     // of two infinitesimals none is known to be the greater
@@ -271,7 +271,7 @@ double Border::whole_offset(NodeId step, std::vector<NodeId> &args) {
     const Op op = graph[step].op;
     const auto width = op == Op::Mod ? graph.as_number(args[1]) : std::optional(1.0);
     if (op == Op::Atan2 || !width || *width == 0) return 0;
-    const auto terms = terms_of(graph, args[0]);
+    const auto terms = terms_of(forms, args[0]);
     if (!terms) return 0;
     double number = 0;
     NodeId rest = graph.number(0);
@@ -291,7 +291,7 @@ double Border::whole_offset(NodeId step, std::vector<NodeId> &args) {
 }
 
 std::optional<NodeId> Border::parity_of(NodeId count, NodeId two) {
-    const auto sum = combination(graph, count, std::array{whole});
+    const auto sum = combination(forms, count, std::array{whole});
     if (!sum || graph.as_number(two) != 2.0) return {};
     const double j = (*sum)[0], n = (*sum)[1];
     if (std::floor(j) != j || std::floor(n) != n) return {};
@@ -312,7 +312,7 @@ std::optional<NodeId> Border::cosine_of_half_turns(double a) {
 }
 
 std::optional<int> Border::sign_of_count(NodeId count) {
-    const auto sum = combination(graph, count, std::array{whole});
+    const auto sum = combination(forms, count, std::array{whole});
     if (!sum) return {};
     const double j = (*sum)[0], n = (*sum)[1];
     const Interval all = Interval(j) * counts.range + Interval(n);

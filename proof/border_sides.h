@@ -120,8 +120,9 @@ struct Border {
     const Counts &counts;
     Met &met;
     Work &work;
+    Expansion &forms;
     Canonical limit{graph, this, false}, moving{graph, this, true};
-    SideRanges ranges{graph, notes, work};
+    SideRanges ranges{graph, notes, work, forms};
 
     // What is known there of coordinates, and of the group's own arguments.
     void enter(Canonical &into, bool moves);

@@ -66,7 +66,7 @@ bool same(Graph &graph, NodeId a, NodeId b, Work *work) {
     }
     if (x.type != ir::Type::Float) return false;
     Expansion expansion(graph, work);
-    auto p = expansion.of(a), q = expansion.of(b);
+    const auto &p = expansion.of(a), &q = expansion.of(b);
     if (!p || !q) return false;
     Polynomial rest = *p;
     for (const auto &[m, c] : *q) rest[m] -= c;
@@ -104,7 +104,7 @@ class SameWhereZero {
 
   private:
     bool differ_by_multiple(NodeId a, NodeId b) {
-        const auto p = expansion_.of(a), q = expansion_.of(b);
+        const auto &p = expansion_.of(a), &q = expansion_.of(b);
         if (!p || !q) return false;
         Polynomial rest = *p;
         for (const auto &[m, c] : *q) rest[m] -= c;
@@ -236,9 +236,9 @@ std::optional<Solved> solved(Graph &graph, NodeId scalar, NodeId is) {
     return {};
 }
 
-std::optional<std::vector<double>> combination(Graph &graph, NodeId scalar,
+std::optional<std::vector<double>> combination(Expansion &forms, NodeId scalar,
                                                std::span<const NodeId> atoms) {
-    const auto sum = polynomial(graph, scalar);
+    const auto &sum = forms.of_next(scalar);
     if (!sum) return {};
     std::vector<double> out(atoms.size() + 1, 0.0);
     for (const auto &[factors, c] : *sum) {
@@ -273,7 +273,12 @@ std::optional<Linear> linear_in(Graph &graph, NodeId scalar, NodeId atom) {
 }
 
 std::optional<std::vector<Term>> terms_of(Graph &graph, NodeId scalar) {
-    const auto sum = polynomial(graph, scalar);
+    Expansion forms(graph);
+    return terms_of(forms, scalar);
+}
+
+std::optional<std::vector<Term>> terms_of(Expansion &forms, NodeId scalar) {
+    const auto &sum = forms.of_next(scalar);
     if (!sum) return {};
     std::vector<Term> out;
     for (const auto &[factors, c] : *sum)
@@ -409,7 +414,8 @@ bool keeps_length(Graph &graph, NodeId q) {
     Expansion expansion(graph);
     Polynomial sum;
     for (int i = 0; i < ir::components(graph[q].type); ++i) {
-        auto a = expansion.of(component_of(graph, q, i)), b = expansion.of(graph.component(p, i));
+        const auto &a = expansion.of(component_of(graph, q, i)),
+                   &b = expansion.of(graph.component(p, i));
         if (!a || !b) return false;
         auto x = expansion.multiply(*a, *a), y = expansion.multiply(*b, *b);
         if (!x || !y) return false;

@@ -11,6 +11,8 @@
 
 namespace fathom::proof {
 
+class Expansion; // polynomials.h: what many sums are asked of
+
 // True where `condition ? a : b` is proved continuous across the condition's border, given that a
 // and b are. Takes its steps off `work`; without any left nothing is proved.
 bool arms_agree(ir::Graph &graph, ir::NodeId condition, ir::NodeId a, ir::NodeId b, Work &work);
@@ -49,7 +51,7 @@ std::optional<Solved> solved(ir::Graph &graph, ir::NodeId scalar, ir::NodeId is)
 
 // What a scalar is, where it is a sum of these atoms, each with a number for factor, and a number,
 // which comes last.
-std::optional<std::vector<double>> combination(ir::Graph &graph, ir::NodeId scalar,
+std::optional<std::vector<double>> combination(Expansion &forms, ir::NodeId scalar,
                                                std::span<const ir::NodeId> atoms);
 
 // by and rest of by*atom + rest, where `atom` stands nowhere else but inside other functions.
@@ -66,6 +68,7 @@ struct Term {
     std::vector<ir::NodeId> factors;
 };
 std::optional<std::vector<Term>> terms_of(ir::Graph &graph, ir::NodeId scalar);
+std::optional<std::vector<Term>> terms_of(Expansion &forms, ir::NodeId scalar);
 
 // Are two scalars the same (same(), above), with each mix(a, b, t) as a + t (b - a)?
 bool same_with_mixes_as_sums(ir::Graph &graph, ir::NodeId a, ir::NodeId b, Work *work = nullptr);

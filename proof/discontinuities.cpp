@@ -44,6 +44,7 @@ constexpr std::size_t max_groups = 48;
 // How sides are compared: with what is known where the field is asked, and case by case (agreement.h)
 // if there are `comparisons`.
 struct Way {
+    Expansion &forms;
     Notes notes{};
     Comparisons *comparisons = nullptr;
 };
@@ -64,7 +65,7 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
     bool same_for_all = true;
     for (const Side side : {Side::Before, Side::At, Side::After}) {
         Border border{graph,   group, seen, whole, little, little_angle, radius,
-                      unknown, notes, half, side,  counts, met,          work};
+                      unknown, notes, half, side,  counts, met,          work, way.forms};
         border.enter(border.limit, false);
         border.enter(border.moving, true);
         sides.push_back(border.limit.of(seen.through));
@@ -285,7 +286,8 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, const Cel
     }
     if (groups.size() > max_groups) return {};
     const std::unordered_map<NodeId, NodeId> through = throughs(graph, root, nodes);
-    const Way quickly;
+    Expansion forms(graph, &work, Expansion::Counts::Nothing);
+    const Way quickly{forms};
     std::vector<const Group *> left;
     for (const auto &[key, group] : groups)
         if (!cancels_somewhere(graph, root, group, through, quickly, work)) left.push_back(&group);
@@ -293,7 +295,7 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, const Cel
         !left.empty() && tells_cells_apart(graph, nodes) &&
         std::ranges::none_of(left, [&](auto *group) { return is_about_an_angle(graph, *group); });
     Comparisons comparisons;
-    const Way by_cases{notes_of(graph, region), &comparisons};
+    const Way by_cases{forms, notes_of(graph, region), &comparisons};
     for (const Group *group : left)
         if (!cases_may_help || comparisons.in_vain ||
             !cancels_somewhere(graph, root, *group, through, by_cases, work)) {

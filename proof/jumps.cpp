@@ -77,10 +77,8 @@ bool find_by_turns(Machine &machine, FieldBound &out, double scale, SomeWays way
     return false;
 }
 
-} // namespace
-
-void find_sides(const Tape &tape, Ranges ranges, FieldBound &out, double scale,
-                const std::array<bool, 3> &reads, const Cell &box, const Zone *zone) {
+void look_for_sides(const Tape &tape, Ranges ranges, FieldBound &out, double scale,
+                    const std::array<bool, 3> &reads, const Cell &box, const Zone *zone) {
     const Told holds = reads_of(tape);
     out.held_params = holds.params;
     out.held_time = holds.time;
@@ -135,6 +133,19 @@ void find_sides(const Tape &tape, Ranges ranges, FieldBound &out, double scale,
         for (std::size_t i = 0; i < 3; ++i) out.where[i] = (sides->a[i] + sides->b[i]) / 2;
         return;
     }
+}
+
+} // namespace
+
+void find_sides(const Tape &tape, Ranges ranges, FieldBound &out, double scale,
+                const std::array<bool, 3> &reads, const Cell &box, const Zone *zone) {
+    constexpr std::size_t most_work = 12'000'000; // of a dear field fewer places are looked at
+    Work &all = *ranges.work, own = all;
+    own.left = std::min(own.left, most_work);
+    const std::size_t before = own.left;
+    ranges.work = &own;
+    look_for_sides(tape, std::move(ranges), out, scale, reads, box, zone);
+    all.take(before - own.left);
 }
 
 } // namespace fathom::proof

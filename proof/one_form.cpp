@@ -10,6 +10,7 @@
 namespace fathom::proof {
 
 constexpr int max_depth_of_form = 400;
+constexpr std::size_t steps_of_a_form = 100; // in time
 
 std::optional<double> Canonical::number(NodeId id) const {
     if (graph[id].op == Op::Splat) return number(graph.arg(id, 0));
@@ -64,6 +65,8 @@ NodeId Canonical::float_of(NodeId id) {
 NodeId Canonical::of(NodeId id, int depth) {
     if (auto it = known.find(id); it != known.end()) return it->second;
     if (depth > max_depth_of_form || known.size() > 4 * max_nodes) failed = true;
+    if (border) border->work.pass(steps_of_a_form);
+    failed = failed || (border && border->work.spent());
     if (failed) return id;
     const ir::Node node = graph[id];
     NodeId out = id;
@@ -244,7 +247,7 @@ std::optional<NodeId> Canonical::written_product(NodeId a, NodeId b) {
 // The sine or cosine of a K + b by those of a K and of b.
 std::optional<NodeId> Canonical::turned(Op op, NodeId angle) {
     if (!border) return {};
-    const auto sum = combination(graph, angle, std::array{border->whole});
+    const auto sum = combination(border->forms, angle, std::array{border->whole});
     if (!sum || (*sum)[0] == 0) return {};
     if (const auto cosine = border->cosine_of_half_turns((*sum)[0]))
         return scalar(graph.mul(

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace fathom::proof {
 
@@ -48,8 +49,11 @@ std::optional<Polynomial> polynomial(Graph &graph, NodeId id, Work *work) {
 bool Expansion::take(std::size_t steps) {
     constexpr std::size_t dearer = 16; // than an operation on intervals
     left_ -= std::min(left_, steps);
-    if (work_) work_->take(dearer * steps);
-    return left_ > 0 && !(work_ && work_->spent());
+    if (work_ && counts_ == Counts::Steps) work_->take(dearer * steps);
+    if (work_ && counts_ == Counts::Nothing) work_->pass(dearer * steps);
+    const bool goes_on = left_ > 0 && !(work_ && work_->spent());
+    gave_up_ = gave_up_ || !goes_on;
+    return goes_on;
 }
 
 std::optional<Polynomial> Expansion::squared(NodeId factor) {
@@ -58,7 +62,7 @@ std::optional<Polynomial> Expansion::squared(NodeId factor) {
         const NodeId sine = graph_.make(Op::Sin, {x});
         return Polynomial{{{}, 1.0}, {{sine, sine}, -1.0}};
     }
-    const auto inner = of(x);
+    const auto &inner = of(x);
     return inner ? multiply(*inner, *inner) : std::nullopt;
 }
 
@@ -90,21 +94,29 @@ std::optional<Polynomial> Expansion::multiply(const Polynomial &a, const Polynom
     return out;
 }
 
-std::optional<Polynomial> Expansion::of(NodeId id) {
-    if (auto c = graph_.as_number(id)) return Polynomial{{{}, *c}};
+const std::optional<Polynomial> &Expansion::of(NodeId id) {
+    static const std::optional<Polynomial> nothing;
     if (const auto it = known_.find(id); it != known_.end()) return it->second;
-    if (depth_ >= 256 || !take(1)) return {};
+    if (auto c = graph_.as_number(id))
+        return known_.emplace(id, Polynomial{{{}, *c}}).first->second;
+    gave_up_ = gave_up_ || depth_ >= 256;
+    if (depth_ >= 256 || !take(1)) return nothing;
     ++depth_;
     auto out = written(id);
     --depth_;
-    known_.emplace(id, out);
-    return out;
+    return known_.emplace(id, std::move(out)).first->second;
+}
+
+const std::optional<Polynomial> &Expansion::of_next(NodeId id) {
+    if (std::exchange(gave_up_, false) || known_.size() > most_known) known_.clear();
+    left_ = most_steps;
+    return of(id);
 }
 
 // a + by*b.
 std::optional<Polynomial> Expansion::sum_of(NodeId a, double by, NodeId b) {
     auto sum = of(a);
-    const auto more = of(b);
+    const auto &more = of(b);
     if (!sum || !more || !take(more->size())) return {};
     for (const auto &[m, x] : *more) (*sum)[m] += by * x;
     return sum->size() > max_terms ? std::optional<Polynomial>() : sum;
@@ -124,7 +136,7 @@ std::optional<Polynomial> Expansion::written(NodeId id) {
     if (node.op == Op::Add || node.op == Op::Sub)
         return sum_of(arg(0), node.op == Op::Add ? 1 : -1, arg(1));
     if (node.op == Op::Mul) {
-        const auto a = of(arg(0)), b = of(arg(1));
+        const auto &a = of(arg(0)), &b = of(arg(1));
         return a && b ? multiply(*a, *b) : std::nullopt;
     }
     if (node.op == Op::Div) {
@@ -135,7 +147,7 @@ std::optional<Polynomial> Expansion::written(NodeId id) {
             for (auto &[m, x] : *a) x /= *c;
             return a;
         }
-        const auto above = of(arg(0));
+        const auto &above = of(arg(0));
         const bool nothing =
             above && std::ranges::all_of(*above, [](const auto &term) { return term.second == 0; });
         if (nothing) return Polynomial(); // wherever it is a number
@@ -151,7 +163,7 @@ std::optional<Polynomial> Expansion::written(NodeId id) {
         const NodeId u = arg(0), v = arg(1);
         Polynomial sum;
         for (int i = 0; i < ir::components(graph_[u].type); ++i) {
-            const auto a = of(component_of(graph_, u, i)), b = of(component_of(graph_, v, i));
+            const auto &a = of(component_of(graph_, u, i)), &b = of(component_of(graph_, v, i));
             if (!a || !b) return {};
             const auto product = multiply(*a, *b);
             if (!product) return {};

@@ -28,8 +28,14 @@ NodeId rebuilt(Graph &graph, const Polynomial &polynomial);
 // is worth comparing, nor is what takes longer.
 class Expansion {
   public:
-    explicit Expansion(Graph &graph, Work *work = nullptr) : graph_(graph), work_(work) {}
-    std::optional<Polynomial> of(NodeId id);
+    enum class Counts { Steps, Nothing }; // as work; in both cases it ends where that is spent
+    explicit Expansion(Graph &graph, Work *work = nullptr, Counts counts = Counts::Steps)
+        : graph_(graph), work_(work), counts_(counts) {}
+    // It stays where it is until of_next is asked.
+    const std::optional<Polynomial> &of(NodeId id);
+    // Of one of many, each of which may take as long as if it were alone, or longer: what is known
+    // of its parts is not asked again. What gave up, and what was written beside it, is forgotten.
+    const std::optional<Polynomial> &of_next(NodeId id);
     std::optional<Polynomial> multiply(const Polynomial &a, const Polynomial &b);
 
   private:
@@ -38,10 +44,14 @@ class Expansion {
     std::optional<Polynomial> sum_of(NodeId a, double by, NodeId b);
     bool take(std::size_t steps);
 
+    static constexpr std::size_t most_steps = 50'000; // nodes and products of terms
+    static constexpr std::size_t most_known = 4'000;  // before they are forgotten
     Graph &graph_;
     Work *work_;
+    Counts counts_;
     std::unordered_map<NodeId, std::optional<Polynomial>> known_;
-    std::size_t left_ = 50'000; // nodes and products of terms
+    std::size_t left_ = most_steps;
+    bool gave_up_ = false; // some node took too long, or is too deep: others are written less far
     int depth_ = 0;
 };
 

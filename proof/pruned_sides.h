@@ -3,6 +3,7 @@
 #pragma once
 
 #include "proof/border_ranges.h"
+#include "proof/polynomials.h"
 
 namespace fathom::proof {
 
@@ -20,6 +21,7 @@ class PrunedSides {
     void enter(const Assumed &given); // a case
     NodeId of(NodeId id);
     SideRanges &ranges() { return ranges_; }
+    Expansion &forms() { return forms_; }
 
     NodeId formed(NodeId made); // in one form
     // Does it change between steps? Then what a comparison of it chooses has a border of its own.
@@ -43,7 +45,8 @@ class PrunedSides {
     Notes notes_;
     Work &work_;
     Assumed given_;
-    SideRanges ranges_{graph_, notes_, work_};
+    Expansion forms_{graph_, &work_, Expansion::Counts::Nothing};
+    SideRanges ranges_{graph_, notes_, work_, forms_};
     std::unordered_map<NodeId, NodeId> known_;
 };
 

@@ -82,8 +82,8 @@ void Prover::run() {
         options.field_instructions *
         std::min<std::size_t>(std::bit_floor(each / options.field_instructions), 16);
     for (std::size_t i = 0; i < count; ++i) {
-        constexpr std::size_t steps_of_a_shape = 50; // in time, not counted as work
-        if (work.stop && work.stop->after(steps_of_a_shape)) work.left = 0;
+        constexpr std::size_t steps_of_a_shape = 50; // in time
+        work.pass(steps_of_a_shape);
         Derived k = derived.front();
         if (places[i].reached) { // what is never evaluated keeps facts that say nothing
             k = know(ShapeId{i});

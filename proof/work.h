@@ -12,9 +12,14 @@ namespace fathom::proof {
 struct Work {
     std::size_t left = std::size_t(-1); // operations on intervals, nodes rewritten, pixels read
     Stop *stop = nullptr;               // where it is no longer wanted nothing is left
-    bool spent() const { return left == 0; }
+    bool spent() const { return left == 0 || stopped(); }
+    bool stopped() const { return stop && stop->stopped(); }
     void take(std::size_t steps) {
         left -= std::min(left, steps);
+        if (stop && stop->after(steps)) left = 0;
+    }
+    // Steps in time alone, of what has limits of its own: they are asked about, and not counted.
+    void pass(std::size_t steps) {
         if (stop && stop->after(steps)) left = 0;
     }
 };
