@@ -56,6 +56,9 @@ struct Canonical {
     NodeId of(NodeId id, int depth = 0);
     NodeId step(NodeId id, const ir::Node &node, int depth);
     std::optional<NodeId> decided(const ir::Node &node, const std::vector<NodeId> &args);
+    std::optional<NodeId> clamped_count(const std::vector<NodeId> &args);
+    std::optional<NodeId> decided_part(const ir::Node &node, const std::vector<NodeId> &args,
+                                       int component);
     std::optional<NodeId> read_of(const ir::Node &node, NodeId index);
 
     NodeId rewritten(NodeId id, const ir::Node &node, int depth);

@@ -64,8 +64,8 @@ bool cancels(Graph &graph, const Seen &seen, const Group &group, bool half, cons
     std::vector<NodeId> sides;
     bool same_for_all = true;
     for (const Side side : {Side::Before, Side::At, Side::After}) {
-        Border border{graph,   group, seen, whole, little, little_angle, radius,
-                      unknown, notes, half, side,  counts, met,          work, way.forms};
+        Border border{graph, group, seen, whole,  little, little_angle, radius,   unknown,
+                      notes, half,  side, counts, met,    work,         way.forms};
         border.enter(border.limit, false);
         border.enter(border.moving, true);
         sides.push_back(border.limit.of(seen.through));
@@ -234,22 +234,6 @@ Notes notes_of(Graph &graph, const Cell *region) {
     return out;
 }
 
-// Does a hash, or a sine, tell cells apart, or an `if` the parts of one? Else no cases are needed, or
-// none help.
-bool tells_cells_apart(const Graph &graph, const std::vector<NodeId> &nodes) {
-    constexpr ir::OpSet of_cells{Op::Hash, Op::Sin, Op::Cos};
-    const auto reads_step = [&](NodeId of) {
-        return std::ranges::any_of(reached(graph, of, false),
-                                   [&](NodeId id) { return is_step[graph[id].op]; });
-    };
-    return std::ranges::any_of(nodes, [&](NodeId id) {
-        if (graph[id].op == Op::Select && reads_step(graph.arg(id, 0))) return true;
-        return of_cells[graph[id].op] && graph.reads(id).point &&
-               std::ranges::none_of(graph.args(id),
-                                    [&](NodeId arg) { return reads_point_bare(graph, arg); });
-    });
-}
-
 bool is_about_an_angle(const Graph &graph, const Group &group) {
     return group.is_angle ||
            std::ranges::any_of(reached(graph, group.turning, false),
@@ -291,9 +275,9 @@ std::unordered_set<NodeId> cancelling_steps(Graph &graph, NodeId root, const Cel
     std::vector<const Group *> left;
     for (const auto &[key, group] : groups)
         if (!cancels_somewhere(graph, root, group, through, quickly, work)) left.push_back(&group);
-    const bool cases_may_help =
-        !left.empty() && tells_cells_apart(graph, nodes) &&
-        std::ranges::none_of(left, [&](auto *group) { return is_about_an_angle(graph, *group); });
+    const bool cases_may_help = !left.empty() && std::ranges::none_of(left, [&](auto *group) {
+        return is_about_an_angle(graph, *group);
+    });
     Comparisons comparisons;
     const Way by_cases{forms, notes_of(graph, region), &comparisons};
     for (const Group *group : left)

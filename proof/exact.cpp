@@ -31,10 +31,13 @@ bool is_of_few_bits(double number) {
 }
 
 bool is_exact(const Graph &graph, const Polynomial &sum) {
+    constexpr ir::OpSet one_of_them{Op::Abs, Op::Min, Op::Max, Op::Clamp}; // or its negative
+    const auto is_atom = [&](NodeId f) {
+        return is_whole(graph, f) || (one_of_them[graph[f].op] && is_made_whole(graph, f));
+    };
     return std::ranges::all_of(sum, [&](const auto &term) {
         const auto &[factors, c] = term;
-        return is_of_few_bits(c) &&
-               std::ranges::all_of(factors, [&](NodeId f) { return is_whole(graph, f); });
+        return is_of_few_bits(c) && std::ranges::all_of(factors, is_atom);
     });
 }
 
@@ -63,8 +66,8 @@ bool single_is_far_off(const Graph &graph, NodeId number) {
 
 bool is_made_whole(const Graph &graph, NodeId id, int depth) {
     constexpr int max_depth = 12;
-    constexpr ir::OpSet keep{Op::Add, Op::Sub,  Op::Mul,  Op::Neg,     Op::Abs,  Op::Min,
-                             Op::Max, Op::Sign, Op::Make, Op::Swizzle, Op::Splat};
+    constexpr ir::OpSet keep{Op::Add, Op::Sub,   Op::Mul,  Op::Neg,  Op::Abs,     Op::Min,
+                             Op::Max, Op::Clamp, Op::Sign, Op::Make, Op::Swizzle, Op::Splat};
     const ir::Node node = graph[id];
     if (graph.is_constant(id)) {
         const ir::Constant &c = graph.constant_of(id);

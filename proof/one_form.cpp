@@ -148,6 +148,10 @@ NodeId Canonical::rewritten(NodeId id, const ir::Node &node, int depth) {
     if (ir::is_vector(node.type)) {
         std::vector<NodeId> parts;
         for (int i = 0; i < ir::components(node.type); ++i) {
+            if (const auto known_one = decided_part(node, args, i)) {
+                parts.push_back(scalar(*known_one));
+                continue;
+            }
             NodeId part = component_of(graph, made, i);
             if (graph[part].op == Op::Swizzle && graph.arg(part, 0) == made)
                 return made; // not made of scalars
@@ -303,6 +307,8 @@ std::optional<NodeId> Canonical::decided(const ir::Node &node, const std::vector
         extremes{Op::Min, Op::Max};
     if (node.op == Op::Select && graph.is_constant(args[0]))
         return args[graph.constant_of(args[0]).value[0] != 0 ? 1 : 2];
+    if (border && node.op == Op::Clamp)
+        if (const auto is = clamped_count(args)) return is;
     if (border && node.type == ir::Type::Float) {
         if (node.op == Op::Clamp) return border->ranges.beyond(args[0], args[1], args[2]);
         if (node.op == Op::Smoothstep) {
@@ -325,6 +331,33 @@ std::optional<NodeId> Canonical::decided(const ir::Node &node, const std::vector
                          : node.op == Op::LessEqual ? *sign <= 0
                          : node.op == Op::Equal     ? *sign == 0
                                                     : *sign != 0);
+}
+
+// min(max(x, least), most) of what differs from both by K times a number, and a number.
+std::optional<NodeId> Canonical::clamped_count(const std::vector<NodeId> &args) {
+    const ir::Type type = graph[args[0]].type;
+    if (type != ir::Type::Float && type != ir::Type::Int) return {};
+    const auto gap = [&](std::size_t limit) {
+        const NodeId x = type == ir::Type::Int ? as_float(args[0]) : args[0],
+                     end = type == ir::Type::Int ? as_float(args[limit]) : args[limit];
+        return graph.sub(x, end);
+    };
+    const auto below = border->sign_of_count(gap(1)), above = border->sign_of_count(gap(2));
+    if (above && *above >= 0) return args[2];
+    if (below && *below <= 0) return graph.make(Op::Min, {args[1], args[2]});
+    return below && above ? std::optional(args[0]) : std::nullopt;
+}
+
+// One component of what is done to each alone.
+std::optional<NodeId> Canonical::decided_part(const ir::Node &node, const std::vector<NodeId> &args,
+                                              int component) {
+    constexpr ir::OpSet by_part{Op::Min, Op::Max, Op::Clamp, Op::Smoothstep};
+    if (!border || !by_part[node.op]) return {};
+    ir::Node part = node;
+    part.type = ir::Type::Float;
+    std::vector<NodeId> parts;
+    for (NodeId arg : args) parts.push_back(component_of(graph, arg, component));
+    return decided(part, parts);
 }
 
 // A list is read at its first entry below that, and at its last beyond: so limits of the index

@@ -21,9 +21,10 @@ class Tiling : public Chance {
             "fn own(p: vec2) -> float = fract(sin(dot(p, vec2(27.609, 57.583))) * 43758.5453)\n"
             "implicit(p => {\n";
         return head +
-               (pick(5) < 3 ? cells()
-                : often()   ? neighbours()
-                            : waves()) +
+               (pick(5) < 3   ? cells()
+                : often()     ? neighbours()
+                : pick(3) < 2 ? rows()
+                              : waves()) +
                "}, within: ball(2))\n";
     }
 
@@ -121,6 +122,32 @@ class Tiling : public Chance {
                (row ? "" : " for y in " + from + "..=1 {") + "\n    let c = i + " + cell +
                "\n    d = min(d, " + (row && pick(4) == 0 ? box : ball) + ")\n  }" +
                (row ? "" : " }") + "\n  " + solid() + "\n";
+    }
+    // Rows and blocks that end, of copies that differ by their number or rise with it, cut by a
+    // distance that now and then is more than the way to the next copy that is not looked at.
+    std::string rows() {
+        const bool block = pick(3) == 0;
+        const std::string size = of({"1", "0.75", "0.5"}), whole = of({"round", "floor"}),
+                          lo = number(-double(pick(3))), hi = nearly(double(pick(3))),
+                          beside = of({"0", "0", "1"}), at = block ? "p.xz" : "p.x",
+                          id = block ? "c.x" : "c";
+        const auto limited = [&](const std::string &n) {
+            return pick(4) == 0 ? n : "clamp(" + n + ", " + lo + ", " + hi + ")";
+        };
+        const std::string up = of({"0", "0.3 * " + id, "0.2 * sin(" + id + ")",
+                                   "0.25 * abs(" + id + ")", "-0.5 * " + id}),
+                          r = of({"0.1", "0.05 + 0.1 * hash(c)", "0.1 + 0.02 * " + id,
+                                  "0.2 * hash(c)", "(if " + id + " > 0 { 0.15 } else { 0.1 })"}),
+                          middle = whole == "floor" ? " + 0.5" : "";
+        const std::string way = block ? "length(vec3(q.x, p.y - " + up + ", q.y))"
+                                      : "length(vec2(q, p.y - " + up + "))";
+        const std::string box =
+            "max(abs(q" + std::string(block ? ".x" : "") + "), abs(p.y - " + up + ") - 0.2)";
+        return "  let n = " + limited(whole + "(" + at + " / " + size + ")") +
+               "\n  var d = 9.0\n  for k in -" + beside + "..=" + beside +
+               " {\n    let c = " + limited("n + k") + "\n    let q = " + at + " - " + size +
+               " * (c" + middle + ")\n    d = min(d, " + (pick(3) == 0 ? box : way) + " - " + r +
+               ")\n  }\n  min(d, " + number(0.05 + 0.1 * double(pick(8))) + ")\n";
     }
     std::string waves() {
         const std::string pi = of({"pi", "3.14159265", "3.1415927", "3.1416", "3.14159"}),
