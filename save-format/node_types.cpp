@@ -75,7 +75,8 @@ constexpr P twist[] = {number("Rate", 1), labelled(word("Axis", "Z"))};
 constexpr P turnaround[] = {labelled(word("Axis", "X"))};
 constexpr P repetition[] = {{"Cell", K::Vector, 0, "", 0, 1e9},
                             labelled({"Count", K::Vector, none, "", 0, none}),
-                            labelled(flag("Differ"))};
+                            labelled(flag("Differ")),
+                            flat};
 constexpr P hyperize[] = {size("Exponent", 1), labelled(tree("Within"))};
 constexpr P offset[] = {number("Distance", 0)};
 constexpr P displacement[] = {word("Map", "<None>"), number("Amount", 0.1), sizes("Scale", 1),
@@ -94,6 +95,7 @@ constexpr P field[] = {tree("Field"),
                        {"Estimate", K::Number, 0, "", 0, 1e9, false, true},
                        material};
 constexpr P distortion[] = {tree("Map"), tree("Within")};
+constexpr P region[] = {tree("Within")};
 constexpr P deformation[] = {word("Function", ""), tree("Arguments"), labelled(flag("Differ"))};
 constexpr P lighting[] = {number("Ambient R", 0),
                           number("Ambient G", 0),
@@ -143,6 +145,7 @@ constexpr NodeTypeRow rows[] = {
     {NodeType::Seam, "Seam", Arity::Two, seam},
     {NodeType::Field, "Field", Arity::Leaf, field},
     {NodeType::Distortion, "Distortion", Arity::One, distortion},
+    {NodeType::Region, "Region", Arity::One, region},
     {NodeType::Complement, "Complement", Arity::One, {}},
     {NodeType::Deformation, "Deformation", Arity::One, deformation},
     {NodeType::Lighting, "LightingNode", Arity::Many, lighting},

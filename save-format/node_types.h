@@ -43,6 +43,7 @@ enum class NodeType : std::uint8_t {
     Seam,
     Field,
     Distortion,
+    Region,
     Complement,
     Deformation,
     Lighting

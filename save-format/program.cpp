@@ -241,33 +241,38 @@ std::string program_text(const Value &steps, const Words &words, std::string &wh
 }
 
 // {Ball: radius, Center: {X, Y, Z}}, {Low: …, High: …}, {Tube: radius, Axis: Y}, `Everywhere`, and
-// in each `Less`: a list.
-std::string region_text(const Value &region) {
+// in each `Less`: a list. `Varying` beside them has programs for what follows params and time.
+std::string region_text(const Value &region, const Words &words) {
     std::string text;
     if (region.kind == Value::Kind::Scalar)
         return spelling_key(region.text) == "everywhere" ? "everywhere" : "";
     if (region.kind != Value::Kind::Mapping) return {};
-    if (const Value *radius = region.find("Ball")) {
-        const auto number = number_of(*radius);
-        if (!number) return {};
-        text = "ball(" + sdf_number(*number);
-        if (const Value *center = region.find("Center")) {
-            const std::string at = vector_of(center);
-            if (at.empty()) return {};
-            text += ", at: " + at;
-        }
-        text += ")";
+    const Value *varying = region.find("Varying");
+    const auto part = [&](const char *key, bool vector) -> std::string {
+        const Value *present = region.find(key);
+        if (!present) return {};
+        std::string why;
+        if (const Value *steps = varying ? varying->find(key) : nullptr)
+            return program_text(*steps, words, why, Given::Nothing);
+        if (vector) return vector_of(present);
+        const auto number = number_of(*present);
+        return number ? sdf_number(*number) : std::string();
+    };
+    if (region.find("Ball")) {
+        const std::string radius = part("Ball", false), at = part("Center", true);
+        if (radius.empty() || (at.empty() && region.find("Center"))) return {};
+        text = "ball(" + radius + (at.empty() ? "" : ", at: " + at) + ")";
     } else if (region.find("Low")) {
-        const std::string low = vector_of(region.find("Low")),
-                          high = vector_of(region.find("High"));
+        const std::string low = part("Low", true), high = part("High", true);
         if (low.empty() || high.empty()) return {};
         text = "aabb(" + low + ", " + high + ")";
-    } else if (const Value *tube = region.find("Tube")) {
-        const auto number = number_of(*tube);
+    } else if (region.find("Tube")) {
+        const std::string radius = part("Tube", false);
         const Value *axis = region.find("Axis");
-        if (!number || !axis || (axis->text != "X" && axis->text != "Y" && axis->text != "Z"))
+        if (radius.empty() || !axis ||
+            (axis->text != "X" && axis->text != "Y" && axis->text != "Z"))
             return {};
-        text = "tube(" + axis->text + ", " + sdf_number(*number) + ")";
+        text = "tube(" + axis->text + ", " + radius + ")";
     } else if (region.find("Everywhere")) {
         text = "everywhere";
     } else {
@@ -275,9 +280,9 @@ std::string region_text(const Value &region) {
     }
     if (const Value *less = region.find("Less")) {
         for (const Value &other : less->items) {
-            const std::string part = region_text(other);
-            if (part.empty()) return {};
-            text += " - " + part;
+            const std::string cut = region_text(other, words);
+            if (cut.empty()) return {};
+            text += " - " + cut;
         }
     }
     return text;
@@ -287,7 +292,7 @@ std::string distortion_text(const Value &map, const Value &within, const Words &
                             std::string &why) {
     const std::string lambda = program_text(map, words, why);
     if (lambda.empty()) return {};
-    const std::string region = region_text(within);
+    const std::string region = region_text(within, words);
     return ".distort(" + lambda + (region.empty() ? "" : ", within: " + region) + ")";
 }
 

@@ -28,7 +28,7 @@ enum class Given : std::uint8_t { Point, PointAndNormal, Direction, Nothing };
 // where the steps make no sense.
 std::string program_text(const Value &steps, const Words &words, std::string &why,
                          Given given = Given::Point);
-std::string region_text(const Value &region);
+std::string region_text(const Value &region, const Words &words);
 std::string vector_text(const Value &vector); // {X, Y, Z}; empty where it is none
 std::string distortion_text(const Value &map, const Value &within, const Words &words,
                             std::string &why);

@@ -23,8 +23,21 @@ Value *find(Value &mapping, std::string_view key) {
     return const_cast<Value *>(std::as_const(mapping).find(key));
 }
 
-Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> kept,
-                   bool imported) {
+// Adds to `varying` the program of what a setting follows; one without words is reported.
+void add_program(std::string_view what, std::string_view key, ir::NodeId value, Value &varying,
+                 Numbers &numbers, Diagnostics &diagnostics) {
+    if (auto steps = numbers.steps(value)) {
+        varying.entries.emplace_back(std::string(key), std::move(*steps));
+        return;
+    }
+    unsaved(diagnostics, {},
+            fmt::format("the save format has no words for what `{}` of {} follows: {}", key, what,
+                        no_words))
+        .note("its present value is written");
+}
+
+Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> kept, bool imported,
+                   Diagnostics &diagnostics) {
     // A kept light without a place is the language's own; the others stand for the scene's lights,
     // in order.
     std::vector<Value> lights;
@@ -82,9 +95,8 @@ Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> 
         Value varying;
         varying.kind = Value::Kind::Mapping;
         const auto vary = [&](const char *name, ir::NodeId value) {
-            if (!numbers.varies(value)) return;
-            if (auto steps = numbers.steps(value))
-                varying.entries.emplace_back(name, std::move(*steps));
+            if (numbers.varies(value))
+                add_program("a light", name, value, varying, numbers, diagnostics);
         };
         vary(key, source.position);
         vary("Color", source.color);
@@ -107,8 +119,13 @@ Value lights_value(const ir::Scene &scene, Numbers &numbers, std::vector<Value> 
             lights.push_back(refresh(std::move(light), scene.lights[next++]));
     }
     while (next < scene.lights.size()) {
-        lights.push_back(refresh(fresh(lights.size() + 1), scene.lights[next]));
-        ++next;
+        const ir::Light &source = scene.lights[next++];
+        if (numbers.vector(source.position))
+            lights.push_back(refresh(fresh(lights.size() + 1), source));
+        else
+            unsaved(diagnostics, {},
+                    "the save format has no words for where a light is: " + no_words)
+                .note("it is left out of the file");
     }
     if (lights.empty() && !imported) lights.push_back(fresh(1));
     return yaml_list(std::move(lights));
@@ -119,14 +136,21 @@ bool gives_background(const ir::Scene &scene, Numbers &numbers) {
 }
 
 // What is round the scene and 0.3 has no place for: labelled.
-void add_surroundings(const ir::Scene &scene, Numbers &numbers, Value &properties) {
+void add_surroundings(const ir::Scene &scene, Numbers &numbers, Value &properties,
+                      Diagnostics &diagnostics) {
     const ir::Lighting &l = scene.lighting;
     const ir::RenderSettings usual;
     const auto add = [&](const char *name, Value value) {
         properties.entries.emplace_back(name, std::move(value));
     };
-    if (gives_background(scene, numbers))
-        if (auto steps = numbers.steps(scene.background)) add("Background", std::move(*steps));
+    if (gives_background(scene, numbers)) {
+        if (auto steps = numbers.steps(scene.background))
+            add("Background", std::move(*steps));
+        else
+            unsaved(diagnostics, {},
+                    "the save format has no words for this background: " + no_words)
+                .note("it is left out of the file");
+    }
     if (scene.render.epsilon != usual.epsilon) add("Epsilon", yaml_scalar(scene.render.epsilon));
     if (scene.render.far != usual.far) add("Far", yaml_scalar(scene.render.far));
     if (scene.render.time_end != usual.time_end)
@@ -134,8 +158,7 @@ void add_surroundings(const ir::Scene &scene, Numbers &numbers, Value &propertie
     Value varying;
     varying.kind = Value::Kind::Mapping;
     const auto vary = [&](const char *name, ir::NodeId value) {
-        if (auto steps = numbers.steps(value))
-            varying.entries.emplace_back(name, std::move(*steps));
+        add_program("the scene", name, value, varying, numbers, diagnostics);
     };
     const std::pair<const char *, ir::NodeId> parts[] = {
         {"Ambient", l.ambient},
@@ -163,7 +186,8 @@ void add_surroundings(const ir::Scene &scene, Numbers &numbers, Value &propertie
     if (!varying.entries.empty()) add("Varying", std::move(varying));
 }
 
-Value lighting_value(const ir::Scene &scene, Numbers &numbers, KeptItems &kept) {
+Value lighting_value(const ir::Scene &scene, Numbers &numbers, KeptItems &kept,
+                     Diagnostics &diagnostics) {
     const ir::Lighting &l = scene.lighting;
     const auto ambient = numbers.vector(l.ambient).value_or(std::array<double, 3>{});
     const auto number = [&](ir::NodeId id) { return yaml_scalar(numbers.number(id).value_or(0)); };
@@ -176,7 +200,7 @@ Value lighting_value(const ir::Scene &scene, Numbers &numbers, KeptItems &kept) 
                                      {"Specular Intensity", number(l.specular_intensity)},
                                      {"Specular Exponent", yaml_scalar(128)},
                                      {"Skip Shadows & Shading", yaml_switch(l.skip)}});
-    add_surroundings(scene, numbers, properties);
+    add_surroundings(scene, numbers, properties, diagnostics);
     Value name = yaml_word("Lighting");
     if (kept.lighting && kept.lighting->items.size() == 3) {
         name = kept.lighting->items[1];
@@ -192,7 +216,8 @@ Value lighting_value(const ir::Scene &scene, Numbers &numbers, KeptItems &kept) 
         }
     }
     properties.entries.emplace_back("Children", lights_value(scene, numbers, std::move(kept.lights),
-                                                             kept.lighting || !kept.items.empty()));
+                                                             kept.lighting || !kept.items.empty(),
+                                                             diagnostics));
     return yaml_list({yaml_word("LightingNode"), std::move(name), std::move(properties)});
 }
 
@@ -360,55 +385,6 @@ static Value caches_value(Numbers &numbers) {
     return yaml_list(std::move(items));
 }
 
-static void count_labelled(const TreeNode &node, std::map<std::string, int> &types, bool &varying) {
-    const NodeTypeRow *row = find_node_type(node.type);
-    if (row && row->type >= first_labelled && row->type != NodeType::Lighting) ++types[row->name];
-    varying = varying || !node.varying.empty();
-    for (const TreeNode &child : node.children) count_labelled(child, types, varying);
-}
-
-// What stands under labelled keys, so that only this project reads it.
-static void report_labelled(const ir::Scene &scene, Numbers &numbers, const TreeNode &root,
-                            Diagnostics &diagnostics) {
-    std::string what;
-    const auto say = [&](const std::string &text) { what += (what.empty() ? "" : ", ") + text; };
-    const auto counted = [](std::size_t n, const std::string &one) {
-        return fmt::format("{} {}{}", n, one, (n == 1 ? "" : "s"));
-    };
-    const ir::RenderSettings usual;
-    std::map<std::string, int> types;
-    bool varying = false;
-    count_labelled(root, types, varying);
-    if (gives_background(scene, numbers)) say("the background");
-    if (scene.render.epsilon != usual.epsilon || scene.render.far != usual.far ||
-        scene.render.time_end != usual.time_end)
-        say("limits of the march");
-    if (!scene.params.empty()) say(counted(scene.params.size(), "parameter"));
-    if (numbers.moves()) say("motion");
-    if (!numbers.words().caches.empty())
-        say(counted(numbers.words().caches.size(), "cached field"));
-    for (const auto &[type, count] : types)
-        say(counted(static_cast<std::size_t>(count), "`" + type + "` node"));
-    if (!what.empty())
-        Remark(diagnostics,
-               Diagnostic{Code::Unsupported,
-                          Severity::Note,
-                          "under labelled keys, which version 0.3 does not have: " + what,
-                          {},
-                          {},
-                          {},
-                          {}})
-            .note("`fathom import` reads them back; another reader leaves them out, and has "
-                  "parameters and motion at their present values");
-    for (const ir::Param &param : scene.params)
-        if (param.structural)
-            unsaved(diagnostics, param.origin,
-                    "`" + param.name +
-                        "` decides what shapes there are: the file has those of "
-                        "its present value")
-                .note("the parameter itself is kept, and moves what follows it otherwise");
-}
-
 std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics,
                         const ExportOptions &options) {
     KeptItems kept = read_kept(scene.kept);
@@ -443,12 +419,12 @@ std::string export_yaml(const ir::Scene &scene, Diagnostics &diagnostics,
     write_item(appearances.textures(), 0, out);
     write_item(yaml_list(appearances.materials()), 0, out);
     std::map<std::string, int> ordinals;
-    Value lighting = lighting_value(scene, numbers, kept); // programs: before the caches they use
+    Value lighting = lighting_value(scene, numbers, kept, diagnostics); // programs: before caches
     const Value caches = caches_value(numbers), parameters = parameters_value(scene);
     if (!caches.items.empty()) root.properties.insert(root.properties.begin(), {"Caches", caches});
     if (!parameters.items.empty())
         root.properties.insert(root.properties.begin(), {"Parameters", parameters});
-    report_labelled(scene, numbers, root, diagnostics);
+    report_labelled(scene, numbers, root, lighting, diagnostics);
     Value tree = node_value(std::move(root), ordinals);
     const bool beside = kept.lighting && !kept.lighting->items.empty() &&
                         switch_of(kept.lighting->items[0]).value_or(false);

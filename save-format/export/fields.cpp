@@ -8,20 +8,41 @@
 
 namespace fathom::save {
 
+// The corners of a box as the text has them, where they follow params or time: as the library makes
+// the box of both, or by its centre and size.
+std::array<NodeId, 2> TreeWriter::corners(const ir::Region &box) {
+    ir::Graph &graph = numbers_.graph();
+    const NodeId half = graph.number(0.5);
+    if (graph[box.size].op == ir::Op::Sub) {
+        const NodeId high = graph.arg(box.size, 0), low = graph.arg(box.size, 1);
+        const std::array<NodeId, 2> halves{graph.mul(low, half), graph.mul(high, half)};
+        if (graph.add({halves[0], halves[1]}) == box.center) return {low, high};
+    }
+    const NodeId reach = graph.mul(box.size, half);
+    const NodeId low = graph.sub(box.center, reach);
+    return {low, graph.add(box.center, reach)};
+}
+
 std::optional<Value> TreeWriter::region(const ir::Region &region) {
-    Value value;
-    value.kind = Value::Kind::Mapping;
+    Value value, varying;
+    value.kind = varying.kind = Value::Kind::Mapping;
+    bool whole = true; // there are words for all that varies
     static constexpr const char *axes[] = {"X", "Y", "Z"};
+    const auto put = [&](const char *key, Value present, NodeId follows) {
+        value.entries.emplace_back(key, std::move(present));
+        if (!follows || !numbers_.varies(follows)) return;
+        auto program = steps(follows);
+        whole = whole && program;
+        if (program) varying.entries.emplace_back(key, std::move(*program));
+    };
     const auto center = region.center ? numbers_.vector(region.center) : std::array<double, 3>{};
     switch (region.kind) {
-    case ir::RegionKind::Everywhere:
-        value.entries.emplace_back("Everywhere", yaml_switch(true));
-        break;
+    case ir::RegionKind::Everywhere: put("Everywhere", yaml_switch(true), {}); break;
     case ir::RegionKind::Ball: {
         const auto radius = numbers_.number(region.size);
         if (!radius || !center) return std::nullopt;
-        value.entries.emplace_back("Ball", yaml_scalar(*radius));
-        value.entries.emplace_back("Center", yaml_xyz((*center)[0], (*center)[1], (*center)[2]));
+        put("Ball", yaml_scalar(*radius), region.size);
+        put("Center", yaml_xyz((*center)[0], (*center)[1], (*center)[2]), region.center);
         break;
     }
     case ir::RegionKind::Box: {
@@ -30,18 +51,21 @@ std::optional<Value> TreeWriter::region(const ir::Region &region) {
         std::array<double, 3> low{}, high{};
         for (std::size_t i = 0; i < 3; ++i)
             low[i] = (*center)[i] - (*size)[i] / 2, high[i] = (*center)[i] + (*size)[i] / 2;
-        value.entries.emplace_back("Low", yaml_xyz(low[0], low[1], low[2]));
-        value.entries.emplace_back("High", yaml_xyz(high[0], high[1], high[2]));
+        const auto ends = corners(region);
+        put("Low", yaml_xyz(low[0], low[1], low[2]), ends[0]);
+        put("High", yaml_xyz(high[0], high[1], high[2]), ends[1]);
         break;
     }
     case ir::RegionKind::Tube: {
         const auto radius = numbers_.number(region.size);
         if (!radius) return std::nullopt;
-        value.entries.emplace_back("Tube", yaml_scalar(*radius));
-        value.entries.emplace_back("Axis", yaml_word(axes[region.axis]));
+        put("Tube", yaml_scalar(*radius), region.size);
+        put("Axis", yaml_word(axes[region.axis]), {});
         break;
     }
     }
+    if (!whole) return std::nullopt;
+    if (!varying.entries.empty()) value.entries.emplace_back("Varying", std::move(varying));
     if (!region.less.empty()) {
         std::vector<Value> less;
         for (const ir::Region &other : region.less) {
@@ -63,7 +87,7 @@ std::optional<TreeNode> TreeWriter::field(ShapeId id, const ir::Region *within,
     add(result, "Field", std::move(*field_steps));
     if (within) {
         auto limits = region(*within);
-        if (!limits) return no_field(id, "a region that is no number");
+        if (!limits) return no_field(id, "this region");
         add(result, "Within", std::move(*limits));
     }
     if (s.assumed > 0) add(result, "Assumed", yaml_scalar(s.assumed));
@@ -139,6 +163,17 @@ std::optional<TreeNode> TreeWriter::otherwise(ShapeId id, const Paint &paint,
                     ": it is written as a function of the "
                     "point within its box")
             .note("its surface is the same; away from it, the file has the distance to the box");
+    } else if (fact.status == ir::ProofStatus::Proved && said_.insert(shape(id).origin).second) {
+        Remark(diagnostics_, Diagnostic{Code::Unsupported,
+                                        Severity::Note,
+                                        "the save format has no words for " + what +
+                                            ": it is written as a function of the point",
+                                        {shape(id).origin, {}},
+                                        {},
+                                        {},
+                                        {}})
+            .note("its bound, proved here, stands beside it: where an import does not prove it "
+                  "again, it is assumed");
     }
     add(result, "Assumed", yaml_scalar(fact.lipschitz_sup));
     if (!paint.fill.empty()) add(result, "Material", yaml_word(paint.fill));

@@ -32,13 +32,17 @@ bool TreeWriter::flat_words(ShapeId id) {
         const bool fixed = s.map == ir::MapKind::Rotate || s.map == ir::MapKind::Scale;
         const auto numbers = fixed ? numbers_.constant(s.args[2]) : std::nullopt;
         if (!numbers || numbers_.varies(s.args[2])) return false;
-        const auto &m = numbers->value;
-        return (s.map == ir::MapKind::Scale || m[0] * m[3] - m[1] * m[2] > 0) && all(s.children);
+        return all(s.children);
+    }
+    case ShapeKind::Repeat: {
+        const ir::Repetition &r = scene_.shapes.repetitions[s.payload];
+        return !r.mirrored && !r.id && numbers_.vector(s.args[0]) && all(s.children);
     }
     case ShapeKind::Empty:
     case ShapeKind::Union:
     case ShapeKind::Intersection:
     case ShapeKind::Complement:
+    case ShapeKind::Xor:
     case ShapeKind::Paint:
     case ShapeKind::Repaint: return all(s.children);
     case ShapeKind::Blend:
@@ -48,13 +52,11 @@ bool TreeWriter::flat_words(ShapeId id) {
                            [&](NodeId value) { return numbers_.number(value).has_value(); }) &&
                all(s.children);
     case ShapeKind::Leaf:
-    case ShapeKind::Xor:
     case ShapeKind::Seam:
     case ShapeKind::Lerp:
     case ShapeKind::PseudoNorm:
     case ShapeKind::Displace:
     case ShapeKind::Extrude:
-    case ShapeKind::Repeat:
     case ShapeKind::Within:
     case ShapeKind::Mixed:
     case ShapeKind::Instances:
@@ -75,12 +77,29 @@ std::optional<TreeNode> TreeWriter::flat_map(ShapeId id, const Paint &paint) {
     if (type == NodeType::Translation) {
         vector(*result, "Vector", graph.make(ir::Op::Neg, {s.args[2]}));
     } else {
-        const auto m = numbers_.constant(s.args[2])->value;
-        if (type == NodeType::Rotation) {
-            const double angle = std::atan2(m[1], m[0]) * 180 / std::numbers::pi;
-            add(*result, "Angles", yaml_xyz(0, 0, -shortest_near(angle)));
+        auto m = numbers_.constant(s.args[2])->value;
+        const auto scaled = [&](double x, double y) {
+            add(*result, "Factors", yaml_xyz(shortest_near(1 / x), shortest_near(1 / y), 1));
+        };
+        if (type == NodeType::Scaling) {
+            scaled(m[0], m[1]);
         } else {
-            add(*result, "Factors", yaml_xyz(shortest_near(1 / m[0]), shortest_near(1 / m[1]), 1));
+            // a reflection is one in x, then the rotation that is left
+            const bool reflects = m[0] * m[3] - m[1] * m[2] < 0;
+            if (reflects) m[0] = -m[0], m[1] = -m[1];
+            double angle = shortest_near(std::atan2(m[1], m[0]) * 180 / std::numbers::pi);
+            if (angle == -180) angle = 180; // of -0 and 0 alike
+            if (reflects) {
+                result->type = row_of(NodeType::Scaling).name;
+                scaled(-1, 1);
+            }
+            if (reflects && angle != 0) {
+                add(*result, "Flat", yaml_switch(true));
+                TreeNode turned = made(NodeType::Rotation);
+                turned.children.push_back(std::move(*result));
+                result = std::move(turned);
+            }
+            if (!reflects || angle != 0) add(*result, "Angles", yaml_xyz(0, 0, -angle));
         }
     }
     add(*result, "Flat", yaml_switch(true));

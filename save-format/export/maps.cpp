@@ -322,8 +322,9 @@ void TreeWriter::copies(ShapeId id, const Paint &paint, std::vector<TreeNode> &o
         auto result = copied(NodeType::Deformation, id, paint);
         if (!result) return;
         add(*result, "Function", yaml_word("repeat_polar"));
-        add(*result, "Arguments",
-            yaml_mapping({{"n", yaml_scalar(*count)}, {"axis", yaml_word(axes[r.axis])}}));
+        Value arguments = yaml_mapping({{"n", yaml_scalar(*count)}});
+        if (s.dims == 3) arguments.entries.emplace_back("axis", yaml_word(axes[r.axis]));
+        add(*result, "Arguments", std::move(arguments));
         out.push_back(std::move(*result));
         return;
     }
@@ -354,6 +355,7 @@ void TreeWriter::copies(ShapeId id, const Paint &paint, std::vector<TreeNode> &o
         for (std::size_t i = 0; i < 3; ++i)
             copies[i] = r.along[i] ? copies[i] : std::numeric_limits<double>::infinity();
         if (counted) add(*result, "Count", yaml_xyz(copies[0], copies[1], copies[2]));
+        if (s.dims == 2) add(*result, "Flat", yaml_switch(true));
     }
     out.push_back(std::move(*result));
 }

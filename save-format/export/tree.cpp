@@ -250,17 +250,17 @@ std::optional<TreeNode> TreeWriter::node(ShapeId id, const Paint &paint) {
         const ShapeId child = bare(s.children[0]);
         const ir::Region &limits = scene_.shapes.regions[s.payload];
         if (shape(child).kind == ShapeKind::Leaf) return field(child, &limits, paint);
-        if (shape(child).kind == ShapeKind::Map) {
-            auto result = single(child, paint);
-            auto value = region(limits);
-            const bool takes_region =
-                result && (result->type == "Distortion" || result->type == "Hyperize");
-            if (takes_region && value) {
-                add(*result, "Within", std::move(*value));
-                return result;
-            }
-        }
-        return otherwise(id, paint, "this use of `within:`");
+        auto value = region(limits);
+        if (!value) return otherwise(id, paint, "this region");
+        auto result = one_child(NodeType::Region, child, paint);
+        if (!result) return result;
+        // a map of space takes it itself
+        const bool map = shape(child).kind == ShapeKind::Map && result->children.size() == 1 &&
+                         (result->children[0].type == row_of(NodeType::Distortion).name ||
+                          result->children[0].type == row_of(NodeType::Hyperize).name);
+        if (map) result = TreeNode(std::move(result->children[0]));
+        add(*result, "Within", std::move(*value));
+        return result;
     }
     case ShapeKind::Intersection: return intersection(id, paint);
     case ShapeKind::Complement: {

@@ -75,6 +75,8 @@ class Numbers {
     bool moves_ = false;
 };
 
+inline const std::string no_words = "it reads an image, or loops too often";
+
 // What the file cannot hold: a warning, since the rest is written.
 Remark unsaved(Diagnostics &diagnostics, Span place, std::string message);
 
@@ -83,6 +85,10 @@ class Appearances;
 // The nodes that unite to the scene, in the order of its text.
 std::vector<TreeNode> export_tree(const ir::Scene &scene, Numbers &numbers,
                                   Appearances &appearances, Diagnostics &diagnostics);
+
+// Notes what stands under labelled keys; `lighting` as it is written.
+void report_labelled(const ir::Scene &scene, Numbers &numbers, const TreeNode &root,
+                     const Value &lighting, Diagnostics &diagnostics);
 
 // The node as it is written; takes it apart, so that it does not stand there twice. `ordinals`: how
 // many nodes of a type there are so far, which are the names of those that have none.

@@ -8,6 +8,7 @@
 #include "save-format/export/tree.h"
 #include "save-format/node_types.h"
 
+#include <set>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -82,6 +83,7 @@ class TreeWriter {
     std::optional<TreeNode> flat_map(ShapeId id, const Paint &paint);
     std::optional<TreeNode> raised(ShapeId id, const char *function, const char *argument,
                                    NodeId value, const Paint &paint);
+    std::array<NodeId, 2> corners(const ir::Region &box);
     std::optional<Value> region(const ir::Region &region);
 
     const Shape &shape(ShapeId id) const { return scene_.shapes[id]; }
@@ -97,11 +99,10 @@ class TreeWriter {
     std::optional<ir::Scene> lowered_; // made when a function is first written
     std::unordered_map<ShapeId, NodeId> raw_;
     std::unordered_map<ShapeId, bool> painted_within_;
-    bool boxed_ = false; // functions are written with the boxes that hold them
-    int functions_ = 0;  // shapes that went out as functions, so that no one knows where they end
+    std::set<Span> said_; // of the shapes that are said to be functions
+    bool boxed_ = false;  // functions are written with the boxes that hold them
+    int functions_ = 0;   // shapes that went out as functions, so that no one knows where they end
 };
-
-inline const std::string no_words = "it reads an image, or loops too often";
 
 // A node without properties.
 TreeNode made(NodeType type);

@@ -83,6 +83,7 @@ std::string leaf_text(Importer &in, const NodeTypeRow &row, Properties &properti
     case NodeType::PseudoNormBlend:
     case NodeType::Seam:
     case NodeType::Distortion:
+    case NodeType::Region:
     case NodeType::Complement:
     case NodeType::Deformation:
     case NodeType::Lighting: break;
@@ -183,19 +184,23 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
     case NodeType::Repetition: {
         reading.vector("Cell", v);
         if (v[0] == 0 && v[1] == 0 && v[2] == 0) return {};
+        const bool flat = reading.number("Flat") != 0;
+        const auto written = [&](const double(&by)[3]) {
+            return flat ? "[" + sdf_number(by[0]) + ", " + sdf_number(by[1]) + "]" : sdf_vector(by);
+        };
         const std::string cell = reading.formula("Cell");
-        std::string call = ".repeat(" + (cell.empty() ? sdf_vector(v) : cell);
+        std::string call = ".repeat(" + (cell.empty() ? written(v) : cell);
         if (reading["Count"].given) {
             double count[3];
             reading.vector("Count", count);
-            call += ", count: " + sdf_vector(count);
+            call += ", count: " + written(count);
         }
         return call + ")";
     }
     case NodeType::Hyperize: {
         const double exponent = reading.number("Exponent");
         const std::string region =
-            reading["Within"].given ? region_text(reading["Within"].tree) : std::string();
+            reading["Within"].given ? region_text(reading["Within"].tree, in.words) : std::string();
         if (exponent == 1 && !reading.varies("Exponent")) return {};
         return ".hyperize(" + reading.text("Exponent") +
                (region.empty() ? "" : ", within: " + region) + ")";
@@ -228,6 +233,13 @@ std::string transform_call(Importer &in, const NodeTypeRow &row, Properties &pro
                ")";
     }
     case NodeType::Complement: return ".complement()";
+    case NodeType::Region: {
+        const std::string region = region_text(reading["Within"].tree, in.words);
+        if (!region.empty()) return ".within(" + region + ")";
+        in.report.content(at, "the region of this node cannot be read")
+            .note("its children stand as they are");
+        return {};
+    }
     case NodeType::Deformation:
     case NodeType::Distortion: {
         std::string why;

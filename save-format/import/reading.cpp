@@ -176,7 +176,7 @@ std::string field_call(Importer &in, const Reading &reading, Span at) {
     }
     std::string call = "implicit(" + lambda;
     if (reading["Within"].given) {
-        const std::string region = region_text(reading["Within"].tree);
+        const std::string region = region_text(reading["Within"].tree, in.words);
         if (region.empty()) {
             in.report.content(at, "the region of this field cannot be read")
                 .note("the node is left out, and kept for an export");

@@ -93,21 +93,21 @@ double picture_difference(const ir::Scene &a, const ir::Scene &b, double time,
 }
 
 struct Trip {
-    std::string exported, labelled, imported, errors, sdf;
+    std::string yaml, exported, labelled, imported, errors, sdf;
     driver::Compilation back;
 };
 
 Trip there_and_back(const driver::Compilation &first, const driver::CompileOptions &options) {
     Trip trip;
     Diagnostics diagnostics;
-    const std::string yaml = save::export_yaml(first.scene, diagnostics);
+    trip.yaml = save::export_yaml(first.scene, diagnostics);
     for (const Diagnostic &d : diagnostics.items()) {
         if (d.severity == Severity::Note)
             trip.labelled += d.message + "\n";
         else
             trip.exported += d.message + "\n";
     }
-    const Imported imported = import_text(yaml);
+    const Imported imported = import_text(trip.yaml);
     trip.imported = imported.said();
     trip.sdf = imported.result.sdf;
     trip.back = driver::compile_text("back.sdf", trip.sdf, FATHOM_SOURCE_DIR "/examples", options);
@@ -295,4 +295,91 @@ TEST_CASE("numbers that follow something come back following it", "[save][exampl
         // A file has a camera always: that of the params' values when it was written.
         CHECK(picture_difference(there.scene, back.scene, 0.4, view_of(back.scene, 0.4)) <= 0.5);
     }
+}
+
+TEST_CASE("regions and flat repetitions come back proved, and follow what they followed",
+          "[save][examples]") {
+    const std::string head = "param a = 0.6 in 0.2..1.2\ncamera(at: [3, 2, 5])\n";
+    for (const char *text : {
+             "box(1).within(ball(3))",
+             "circle(1).extrude(1, twist: 30deg).within(ball(1.2 + a))",
+             "gyroid(1, 0.2).within(aabb([-a, -1, -1], [1, a, 1]))",
+             "(box(1).paint(red) | sphere(0.5).translate(x: 1)).within(ball(1) - tube(Y, 0.3 * a))",
+             "plane(Y, 0).twist(1, axis: X).within(ball(1, at: [0, 0.3 * sin(time), 0]))",
+             "implicit(p => length(p) - 1, within: aabb([-1, -a, -1], [1, 1, a]) - ball(0.3))",
+             "box([1, 3, 1]).distort(p => [p.x + 0.2 * sin(2 * p.y), p.y, p.z], within: tube(Y, "
+             "a))",
+             "box(1).hyperize(1.5, within: ball(a))",
+             "sphere(0.4).repeat([1, 1, 1]).within(ball(2)).bend(0.2)",
+             "for i in 0..3 { box(0.8).within(ball(0.4 + 0.1 * i)).translate(x: i) }",
+             "box(0.8).repeat([1, 0, 1], count: [3, 1, 3], copies: (s, id) => s.within(ball(0.45 + "
+             "0.05 * id.x * a)))",
+             "circle(0.3).translate(x: 1).repeat_polar(5).extrude(0.3)",
+             "rectangle([0.4, 0.2]).rotate(a * 0 + 20deg).repeat([0.8, 0], count: [3, "
+             "1]).extrude(a)",
+             "circle(0.2 * a).repeat([0.9, 1]).extrude(0.3) & box(3)",
+             "rectangle([0.8, 0.3]).translate([0.6, 0.3]).rotate(10deg).reflect([1, "
+             "0.5]).extrude(a)",
+             "rectangle([0.8, 0.3]).translate([0.6, 0.3]).mirror(Y).revolve(1)",
+             "xor { circle(0.5)\ncircle(a).translate(x: 0.4) }.extrude(0.4)",
+         }) {
+        CAPTURE(text);
+        const driver::Compilation first = driver::compile_text("a.sdf", head + text, "", {});
+        for (const Diagnostic &d : first.diagnostics.items())
+            if (d.severity == Severity::Error) UNSCOPED_INFO(d.message);
+        REQUIRE(first.good());
+        const Trip trip = there_and_back(first, {});
+        CAPTURE(trip.sdf);
+        CHECK(trip.exported == "");
+        CHECK(trip.imported == "");
+        CHECK(trip.errors == "");
+        if (!trip.back.good()) continue;
+        const auto status = [](const ir::Scene &scene) {
+            return scene.facts[scene.root.index].status;
+        };
+        CHECK(status(first.scene) == ir::ProofStatus::Proved);
+        CHECK(status(trip.back.scene) == ir::ProofStatus::Proved);
+        Diagnostics again;
+        CHECK(save::export_yaml(trip.back.scene, again) == trip.yaml);
+        driver::CompileOptions options;
+        options.overrides = {{"a", "0.9"}};
+        const driver::Compilation there = driver::compile_text("a.sdf", head + text, "", options),
+                                  back = driver::compile_text("b.sdf", trip.sdf, "", options);
+        REQUIRE(there.good());
+        REQUIRE(back.good());
+        CHECK(field_difference(there.scene, back.scene, 0.4) <= most(trip.sdf));
+        CHECK(picture_difference(there.scene, back.scene, 0.4) <= 0.5);
+    }
+}
+
+TEST_CASE("an export says what version 0.3 does not read, and what is lost", "[save][examples]") {
+    const auto trip_of = [](const char *text) {
+        driver::Compilation first =
+            driver::compile_text("a.sdf", text, FATHOM_SOURCE_DIR "/examples/parts", {});
+        for (const Diagnostic &d : first.diagnostics.items())
+            if (d.severity == Severity::Error) UNSCOPED_INFO(d.message);
+        REQUIRE(first.good());
+        return there_and_back(first, {});
+    };
+    const std::string labelled = "under labelled keys, which version 0.3 does not have: ";
+    CHECK(trip_of("box([1, 3, 1]).twist(0.7, axis: X)\nlight(at: [3, 3, 3])\n"
+                  "sphere(1).paint(p => if p.x > 0 { red } else { blue }).translate(x: 3)\n")
+              .labelled ==
+          labelled + "1 light, `Axis` of 1 `Twist` node, `Paint` of 1 `Generic` node\n");
+    CHECK(trip_of("sphere(0.4).repeat([1, 0, 1], count: [3, 1, 3])").labelled ==
+          labelled + "`Count` of 1 `Repetition` node\n");
+    CHECK(trip_of("box(1).rotate(30deg)").labelled == "");
+    // what is a function now, and may be proved no more
+    CHECK(
+        trip_of("circle(0.5).elongate([0.5, 0]).extrude(0.3)").labelled ==
+        "the save format has no words for flat shapes: it is written as a function of the point\n" +
+            labelled + "1 `Field` node\n");
+    CHECK(trip_of("let im = image(\"tiles.png\")\nsphere(1)\nbackground(d => im(d.xy).rgb)")
+              .exported ==
+          "the save format has no words for this background: it reads an image, or "
+          "loops too often\n");
+    CHECK(trip_of("let im = image(\"tiles.png\")\nsphere(1)\n"
+                  "light(at: [3, 3, im([time, 0]).r])")
+              .exported == "the save format has no words for where a light is: it reads an image, "
+                           "or loops too often\n");
 }
