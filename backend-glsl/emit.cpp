@@ -10,11 +10,37 @@
 #include "backend-glsl/turns.h"
 #include "ir/view.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fathom::glsl {
 
 namespace {
+
+// The first shape that reads an image or a grid, as its user wrote it; no source where none does.
+Span reads_sampler(const ir::Scene &scene) {
+    const ir::Graph &graph = scene.graph;
+    std::vector<bool> reads(graph.size()); // arguments, and what a call calls, stand before it
+    for (std::size_t i = 0; i < graph.size(); ++i) {
+        const ir::Node &node = graph[ir::NodeId{i}];
+        const auto of = [&](ir::NodeId id) { return id && id.index < i && reads[id.index]; };
+        reads[i] =
+            node.op == ir::Op::Image || node.op == ir::Op::Grid ||
+            std::ranges::any_of(graph.args(ir::NodeId{i}), of) ||
+            (node.op == ir::Op::Call && of(graph.function(ir::FunctionId{node.payload}).result));
+    }
+    const auto read = [&](ir::NodeId id) { return id && reads[id.index]; };
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        const ir::Shape &s = scene.shapes[ir::ShapeId{i}];
+        const bool paints = s.kind == ir::ShapeKind::Paint || s.kind == ir::ShapeKind::Repaint;
+        const ir::Material *m = paints ? &scene.shapes.materials[s.payload] : nullptr;
+        if (s.origin.source &&
+            (std::ranges::any_of(s.args, read) || (m && (read(m->diffuse) || read(m->specular) ||
+                                                         read(m->exponent) || read(m->emission)))))
+            return s.origin;
+    }
+    return {};
+}
 
 class Emitter {
   public:
@@ -91,9 +117,17 @@ class Emitter {
         for (const auto &[id, field] : module_.cached) output.cached.push_back(cached_field(id));
         const TargetTraits &target = traits_of(options_.target);
         if ((!module_.images.empty() || !module_.grids.empty()) && !target.samplers) {
-            diagnostics_.add(Code::Unsupported, {},
-                             std::string("images and grids cannot be put into a text for `") +
-                                 target.name + "`");
+            std::string others;
+            for (const Target other : all_targets())
+                if (traits_of(other).samplers)
+                    others +=
+                        std::string(others.empty() ? "`" : ", `") + traits_of(other).name + "`";
+            diagnostics_
+                .add(Code::Unsupported, reads_sampler(scene_),
+                     std::string("images and grids cannot be put into a text for `") + target.name +
+                         "`")
+                .help("write the text for a target whose host binds them: " + others +
+                      "; or paint and shape by a function of the point");
             return {};
         }
 

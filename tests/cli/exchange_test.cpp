@@ -112,6 +112,23 @@ TEST_CASE("what an export cannot say is a warning") {
     CHECK(contains(folder.read("loop.yaml"), "Sphere 1"));
 }
 
+TEST_CASE("a target without images says which shape reads one, and what to take") {
+    ScratchFolder folder;
+    folder.write("a.png", fathom::encode_png({1, 1, {10, 20, 30, 255}}));
+    folder.write("a.sdf", "box(1)\nlet im = image(\"a.png\")\n"
+                          "sphere(1).paint(p => im(p.xz).rgb).translate(x: 2)\n");
+    for (const char *target : {"shadertoy", "glslviewer"}) {
+        const Result made =
+            shell(folder, std::string("fathom compile a.sdf --target ") + target + " -o a.frag");
+        CHECK(made.exit == 1);
+        CHECK(contains(made.err, "a.sdf:3:1: error[unsupported]: images and grids cannot be put "
+                                 "into a text for `" +
+                                     std::string(target) + "`"));
+        CHECK(contains(made.err, "sphere(1).paint(p => im(p.xz).rgb)"));
+        CHECK(contains(made.err, "`glsl450`, `glsl330`, `es300`"));
+    }
+}
+
 TEST_CASE("an export into another folder finds the scene's files again") {
     ScratchFolder folder;
     const std::vector<std::uint8_t> shades{0,   0,   0,   255, 255, 255, 255, 255,
