@@ -17,6 +17,7 @@ namespace {
 
 constexpr int moments = 16;             // of a scene that moves
 constexpr double most_work = 200e6;     // operations on boxes
+constexpr int plane_places = 17;        // a side, of the plane that an orthographic view begins on
 constexpr std::size_t first_a_side = 1; // parts that are looked at together at first
 
 // Spread over the whole time by the golden ratio, so that no period of the motion is met in step.
@@ -128,25 +129,44 @@ void find_framing(ir::Scene &scene, ir::Interval times, Diagnostics &diagnostics
 }
 
 void tell_of_view_inside(const ir::Scene &scene, double time, Diagnostics &diagnostics) {
-    if (scene.top_level.empty() || scene.camera.orthographic) return;
+    if (scene.top_level.empty()) return;
     const ir::Graph &graph = scene.graph;
     if (ir::operations(graph, graph.function(scene.distance).result) > most_operations_inside)
         return;
     const ir::View view = ir::view_of(scene, time, 1);
     const cpu::Program program = cpu::compile(scene, scene.distance);
     cpu::Scratch scratch = cpu::make_scratch(program, cpu::inputs_of(scene, time));
-    std::array<float, 3> at;
-    for (int i = 0; i < 3; ++i)
-        at[static_cast<std::size_t>(i)] = static_cast<float>(view.origin[i]);
-    const float *const in[] = {&at[0], &at[1], &at[2]};
-    float distance = 0, *const out[] = {&distance};
-    cpu::evaluate(program, scratch, in, out, 1);
-    if (!(distance < -scene.render.epsilon)) return;
-    Diagnostic &told = diagnostics.add(
-        Code::ViewInside, scene.top_level.front().span,
-        fmt::format("the view begins at [{:.3g}, {:.3g}, {:.3g}], within the solid, and so shows "
-                    "nothing of its surface",
-                    at[0], at[1], at[2]));
+    const auto inside = [&](glm::dvec3 place) {
+        std::array<float, 3> at;
+        for (int i = 0; i < 3; ++i) at[static_cast<std::size_t>(i)] = static_cast<float>(place[i]);
+        const float *const in[] = {&at[0], &at[1], &at[2]};
+        float distance = 0, *const out[] = {&distance};
+        cpu::evaluate(program, scratch, in, out, 1);
+        return distance < -scene.render.epsilon;
+    };
+    const auto tell = [&](std::string_view how) -> Diagnostic & {
+        return diagnostics.add(
+            Code::ViewInside, scene.top_level.front().span,
+            fmt::format(fmt::runtime(how), view.origin.x, view.origin.y, view.origin.z));
+    };
+    if (view.orthographic) { // its rays begin all over a plane
+        bool cut = false;
+        for (int i = 0; i < plane_places * plane_places && !cut; ++i) {
+            const auto part = [](int k) { return 2.0 * k / (plane_places - 1) - 1; };
+            cut = inside(view.origin + view.extent * (part(i % plane_places) * view.right +
+                                                      part(i / plane_places) * view.up));
+        }
+        if (cut)
+            tell("the view begins on the plane through [{:.3g}, {:.3g}, {:.3g}], which cuts the "
+                 "solid: what lies behind the plane is not seen")
+                .help("set the camera's `at` farther back: an orthographic picture shows all as "
+                      "large from there");
+        return;
+    }
+    if (!inside(view.origin)) return;
+    Diagnostic &told =
+        tell("the view begins at [{:.3g}, {:.3g}, {:.3g}], within the solid, and so shows nothing "
+             "of its surface");
     if (!scene.camera.given)
         told.note("without a `camera(…)` the whole solid is framed from outside of its box");
     told.help(
