@@ -96,6 +96,7 @@ std::vector<Edit> Builder::call_of_list(Index open) const {
             {{id_, token(close).end, token(close).end}, ")"}};
 }
 
+// Long: a case for each thing that was wanted, with the usual slips at its place.
 void Builder::generic_failure(Wanted wanted, Index at) {
     const Tok found = kind(at);
     const bool exists = at < tokens_.tokens.size();
@@ -192,6 +193,11 @@ void Builder::generic_failure(Wanted wanted, Index at) {
                 d.help("the shapes that are joined stand in braces: " +
                        in_code(std::string(text(token(open - 1).begin, token(at - 1).end)) +
                                " { … }"));
+            else if (found == Tok::Name && kind(at - 1) == Tok::Close && !token(at).first_on_line &&
+                     kind(at + 1) == Tok::End) // `sphere(1) red`
+                d.help("what is done to a shape stands behind a `.`, as in " +
+                       in_code(".paint(" + std::string(text(at)) + ")") +
+                       "; another statement begins a new line");
             else if (shapes) // `sphere(1) box(1)`
                 d.help("an operator is missing: `a | b` unites shapes, `a - b` cuts b out of a, "
                        "`a & b` is what both have in common");
@@ -200,8 +206,14 @@ void Builder::generic_failure(Wanted wanted, Index at) {
         }
         break;
     case Wanted::OpenParen: d.note("a function without parameters has empty parentheses"); break;
-    case Wanted::Expression:
     case Wanted::Statement:
+        if (is_one_of(found, {Tok::Bar, Tok::Amp}))
+            d.help("it stands between two shapes: leave it away here",
+                   {{{id_, token(at).begin,
+                      kind(at + 1) == Tok::End ? token(at).end : token(at + 1).begin},
+                     ""}});
+        break;
+    case Wanted::Expression:
     case Wanted::AssignSign:
     case Wanted::Type:
     case Wanted::TypeEnd:

@@ -116,9 +116,13 @@ std::optional<Value> element_as_known(Interpreter &ev, const Value &v, Span plac
         }
     }
     const char *why = reads.time && !reads.point ? "`time`" : "the point";
-    report(ev, Code::StageMismatch, place,
-           fmt::format("{} has to be known when the scene is read, and this depends on {}", what,
-                       why));
+    Diagnostic &d =
+        report(ev, Code::StageMismatch, place,
+               fmt::format("{} has to be known when the scene is read, and this depends on {}",
+                           what, why));
+    if (what.text == which_shapes && reads.time && !reads.point)
+        d.help("let all shapes stand there, and their sizes, places or what they turn into follow "
+               "the time: `sphere(if time > 2 { 1 } else { 0.5 })`, `blend(a, b, t)`");
     return std::nullopt;
 }
 

@@ -255,6 +255,8 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
               bool &ok) {
     if (auto converted = as_type(ev, v, type)) return *converted;
     ok = false;
+    if (type.kind != lang::TypeExpr::Kind::List && told_of_block(ev, v, place, what))
+        return poison();
     Diagnostic &d =
         report(ev, Code::TypeMismatch, place,
                fmt::format("{} wants {} `{}`, this is {}", what, type.in_radians ? "an" : "a",

@@ -120,6 +120,28 @@ std::string_view what_there_is(const Value &object) {
     return {};
 }
 
+// `sphere {1}`: a block behind a call whose last parameter is no list of shapes.
+bool told_of_block(Interpreter &ev, const Value &v, Span place, What what) {
+    const std::string_view written = text(ev.sources, place);
+    if (v.kind != ValueKind::List || !written.starts_with('{') || what.of.empty()) return false;
+    std::vector<Edit> edits;
+    if (written.ends_with('}') && written.find_first_of("\n;") == written.npos) {
+        const std::string_view all = ev.sources[place.source].text;
+        const std::string_view inner = written.substr(1, written.size() - 2);
+        std::uint32_t begin = place.begin;
+        while (begin > 0 && all[begin - 1] == ' ') --begin;
+        const auto skipped =
+            static_cast<std::uint32_t>(std::min(inner.find_first_not_of(' '), inner.size()));
+        const auto kept = static_cast<std::uint32_t>(inner.find_last_not_of(' ') + 1);
+        edits = {{{place.source, begin, place.begin + 1 + skipped}, "("},
+                 {{place.source, place.begin + 1 + std::max(kept, skipped), place.end}, ")"}};
+    }
+    report(ev, Code::TypeMismatch, place,
+           fmt::format("`{}` takes no block: braces hold shapes that are put together", what.of))
+        .help("its arguments stand in parentheses", edits);
+    return true;
+}
+
 void help_with_uncalled(Interpreter &ev, Diagnostic &d, const Value &v, Span place) {
     if (v.kind != ValueKind::Closure || is_library_place(ev, place)) return;
     const std::span<const Formal> formals = formals_of(ev, ev.closures[v.id]);

@@ -92,6 +92,8 @@ std::string_view way_from_elsewhere(std::string_view name);
 std::string_view what_there_is(const Value &object);
 // For a function where its value is wanted: the call, which is the edit where it needs no argument.
 void help_with_uncalled(Interpreter &ev, Diagnostic &d, const Value &v, Span place);
+// `sphere {1}`: reports a block behind a call whose last parameter is no list of shapes.
+bool told_of_block(Interpreter &ev, const Value &v, Span place, What what);
 // A call as it should be: the one in the description of the library's function, or made up for what
 // changes a shape; empty: none.
 std::string example_of(Interpreter &ev, std::string_view name, std::span<const Formal> formals);

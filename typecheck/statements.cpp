@@ -357,8 +357,8 @@ static bool contribute_if(Interpreter &ev, const File &ast, const lang::If &node
     for (const lang::IfBranch &branch : node.branches) {
         auto condition = condition_value(ev, ast, branch.condition, frame);
         if (!condition) return false;
-        auto known = element_as_known(ev, *condition, ast.exprs[branch.condition].span,
-                                      "a condition that decides which shapes there are");
+        auto known =
+            element_as_known(ev, *condition, ast.exprs[branch.condition].span, which_shapes);
         if (!known) return false;
         if (known->num[0] != 0) return contribute_inner(ev, ast, branch.body, frame, out);
     }

@@ -16,6 +16,7 @@ struct What {
     What(const std::string &words) : text(words) {}
     What(std::string_view name, std::string_view of) : name(name), of(of) {}
 };
+inline constexpr const char *which_shapes = "a condition that decides which shapes there are";
 inline What quoted(std::string_view name, std::string_view of = {}) { return {name, of}; }
 
 } // namespace fathom::typecheck

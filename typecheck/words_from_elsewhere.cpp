@@ -63,7 +63,7 @@ constexpr Row names[] = {
     {"orient", "alignto"},
     {"scale", "zoom enlarge setscale scaleby"},
     {"mirror", "symmetry symmetric flip symx symy symz symxz"},
-    {"repeat", "array tile tiled replicate lattice rep replim repetition limitedrepetition "
+    {"repeat", "tile tiled replicate lattice rep replim repetition limitedrepetition "
                "repeatlimited mod1 mod2 mod3 domainrepetition"},
     {"repeat_polar", "polarrepeat radialrepeat circulararray polararray circularpattern "
                      "modpolar radial"},
@@ -245,6 +245,15 @@ constexpr Row ways[] = {
      "orient"},
     {"edges are rounded by `rounded_box(size, r)`, or `.offset(r)` of a smaller shape",
      "bevel chamfer rounded roundcorners roundedges"},
+    {"copies in a row are `.repeat([2, 0, 0], count: [5, 1, 1])`: first how far apart, then how "
+     "many "
+     "along each axis",
+     "array arraymodifier lineararray linearpattern"},
+    {"`a | b` unites shapes, `a - b` cuts b out of a, `a & b` is what both have in common",
+     "boolean booleanmodifier booleanop"},
+    {"how it shines belongs to the paint: `.paint(material(diffuse: gold, exponent: 100))`; the "
+     "larger `exponent`, the smaller the highlight",
+     "shiny glossy shininess gloss specular roughness metallic"},
     {"edges are rounded by `rounded_box(size, r)`, joints by `smooth_union(r) { … }`", "fillet"},
     {"what swings is computed of `time`: `sin(time)`", "osc"},
     {"a shape is given a colour or a material by `.paint(…)`",

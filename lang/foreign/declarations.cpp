@@ -394,8 +394,17 @@ bool ForeignSyntax::foreign_binding(Index at) {
     }
     if (found == Tok::In && kind(at - 2) == Tok::Param) {
         const std::string name(text(before));
-        diagnostics_.add(Code::ParamRange, span(before), "a param has a value beside its range")
-            .help("write " + in_code("param " + name + " = 1 in 0..2"));
+        Diagnostic &d = diagnostics_.add(Code::ParamRange, span(before),
+                                         "a param has a value beside its range");
+        // of its own range the lower end, where that is a number
+        if (kind(at + 1) == Tok::Number &&
+            is_one_of(kind(at + 2), {Tok::DotDot, Tok::DotDotEqual})) {
+            const std::string low(text(at + 1));
+            d.help("write its value, " + in_code("param " + name + " = " + low + " in …") +
+                       ", which may be any of the range",
+                   {{{id_, token(before).end, token(before).end}, " = " + low}});
+        } else
+            d.help("write " + in_code("param " + name + " = 1 in 0..2"));
         return true;
     }
     if (range_in_parentheses(at)) return true;

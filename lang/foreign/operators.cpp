@@ -245,9 +245,16 @@ bool ForeignSyntax::missing_operand(Index at) {
     if (!behind && wanted_at_start(at)) return false;
     const bool ahead = is_binary(found); // that sign wants one before it
     const Index shown = ahead ? at : before;
-    diagnostics_.add(Code::SyntaxError, span(shown),
-                     "a value is missing " + std::string(ahead ? "before " : "behind ") +
-                         in_code(text(shown)));
+    const bool shapes = is_one_of(kind(shown), {Tok::Bar, Tok::Amp});
+    Diagnostic &d =
+        diagnostics_.add(Code::SyntaxError, span(shown),
+                         (shapes ? "a shape is missing " : "a value is missing ") +
+                             std::string(ahead ? "before " : "behind ") + in_code(text(shown)));
+    if (is_binary(kind(shown)) && !(ahead && behind)) {
+        const std::uint32_t from = !ahead && shown > 0 ? token(shown - 1).end : token(shown).begin;
+        d.help("write it, or leave " + in_code(text(shown)) + " away",
+               {{{id_, from, token(shown).end}, ""}});
+    }
     return true;
 }
 
