@@ -1,6 +1,7 @@
 #include <fathom/measure.h>
 
 #include "api/mesh.h"
+#include "api/mesh_advice.h"
 #include "mesh/certify.h"
 #include "mesh/clearance.h"
 
@@ -56,6 +57,7 @@ Measures measured(const Scene &scene, const MeshOptions &options) {
     result.components = form.components;
     result.genus = form.genus;
     result.rests_on = rests_on(found.used_bound);
+    result.message = advice_on_drawn(ir_of(scene), settings, made);
     return result;
 }
 

@@ -248,6 +248,10 @@ Exit run(const MeasureCommand &command, Terminal &terminal) {
             return say_refusal(command.solid, file, fmt::format("measures of `{}`", subject.name),
                                subject.of.status, subject.of.message, terminal);
         }
+        if (subject.of.message.empty()) continue;
+        terminal.finish_progress();
+        terminal.say(fmt::format("{}: what stands beside the enclosures is of a mesh: {}",
+                                 subject.name, subject.of.message));
     }
     std::vector<Between> clearances;
     for (std::size_t k = 0; k < pairs.size(); ++k) {

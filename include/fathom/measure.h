@@ -30,7 +30,7 @@ struct Enclosure {
 /** In the scene's units. What is proved rests on what `rests_on` names (docs/measure.md). */
 struct Measures {
     MeshStatus status = MeshStatus::Done;
-    std::string message; /**< why there is none, as Mesh::message */
+    std::string message; /**< why there is none, or what the mesh does not show, as Mesh::message */
     Enclosure volume;
     std::array<Enclosure, 3> center;
     std::array<Enclosure, 3> least, greatest; /**< the ends of the solid's box */

@@ -97,6 +97,17 @@ TEST_CASE("a part that holds no point is listed as empty") {
     CHECK(contains(table.out, "none, line 3\n  holds no point\n"));
 }
 
+TEST_CASE("a wall that the mesh has holes in is said beside its measures") {
+    ScratchFolder folder;
+    folder.write("shell.sdf", "sphere(1).shell(0.01)\n");
+    const Result thin = shell(folder, "fathom measure shell.sdf --resolution 24");
+    CHECK(thin.exit == 0);
+    CHECK(contains(thin.err, "what stands beside the enclosures is of a mesh: walls or gaps may "
+                             "have holes: one is about 0.0"));
+    folder.write("ball.sdf", "sphere(1)\n");
+    CHECK(shell(folder, "fathom measure ball.sdf --resolution 24").err.empty());
+}
+
 TEST_CASE("what cannot be measured says why") {
     ScratchFolder folder;
     folder.write("ground.sdf", "plane(Y, 0)\n");
