@@ -197,7 +197,7 @@ TEST_CASE("fields that are subroutines draw the same picture to the bit") {
     REQUIRE(std::holds_alternative<gl::Context>(context));
     const fs::path examples = fs::path(FATHOM_SOURCE_DIR) / "examples";
     const std::pair<const char *, int> scenes[] = {
-        {"01_sphere.sdf", 1}, {"well.sdf", 2}, {"displacement.sdf", 3}, {"old_tree.sdf", 2}};
+        {"01_sphere.sdf", 1}, {"well.sdf", 3}, {"11_well.sdf", 2}, {"old_tree.sdf", 2}};
     for (const auto &[name, fields] : scenes) {
         CAPTURE(name);
         driver::CompileOptions with_cells;

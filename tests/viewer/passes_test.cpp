@@ -73,12 +73,12 @@ TEST_CASE("passes of a picture equal one long draw to the bit") {
     }
 }
 
-TEST_CASE("where a picture is rough its pixels have two or four samples, and no others are drawn") {
+TEST_CASE("where a picture is rough its pixels have two, four or eight samples, and no others") {
     require_context();
     const auto made = driver::compile_text("scene.sdf", steep, "", {});
     REQUIRE(made.good());
     const gl::Pixels once = rendered(made.scene, 0, 1), twice = rendered(made.scene, 0, 2),
-                     four = rendered(made.scene, 0, 4);
+                     four = rendered(made.scene, 0, 4), eight = rendered(made.scene, 0, 8);
     for (int turns : {0, 7}) {
         CAPTURE(turns);
         const gl::Pixels smooth = rendered(made.scene, turns, 0);
@@ -90,8 +90,8 @@ TEST_CASE("where a picture is rough its pixels have two or four samples, and no 
                     if (std::abs(smooth.rgba[c] - of.rgba[c]) > 1e-4f) return false;
                 return true;
             };
-            samples += is(once) ? 1 : is(twice) ? 2 : 4;
-            others += !is(once) && !is(twice) && !is(four);
+            samples += is(once) ? 1 : is(twice) ? 2 : is(four) ? 4 : 8;
+            others += !is(once) && !is(twice) && !is(four) && !is(eight);
         }
         CHECK(others <= 2); // places are rounded otherwise, and an edge runs there
         const std::size_t pixels = smooth.rgba.size() / 4;
