@@ -1,6 +1,7 @@
 // See mesh_advice.h.
 #include "api/mesh_advice.h"
 
+#include "mesh/grid.h"
 #include "mesh/pieces.h"
 #include "mesh/thin.h"
 
@@ -14,9 +15,10 @@
 namespace fathom::v1 {
 namespace {
 
+constexpr double showing = 1.5; // cells across what is thin
+
 // What shows a wall or a gap of a thickness: a sentence's end.
 std::string shown_by(double thickness, const fathom::mesh::Lattice &lattice, const ir::Box &solid) {
-    constexpr double showing = 1.5; // cells across what is thin
     const double tolerance = thickness / showing;
     if (!fathom::mesh::make_lattice(solid, tolerance, 0))
         return ", thinner than the finest cells of any mesh: make it thicker, or leave it out";
@@ -31,47 +33,6 @@ std::string shown_by(double thickness, const fathom::mesh::Lattice &lattice, con
 // Of how thick something is at some places, from the least: a sharp edge is as thin as one likes
 // somewhere; of a wall all places tell its thickness.
 double lower_quarter(const std::vector<double> &thick) { return thick[thick.size() / 4]; }
-
-// The vertices of a mesh by cubes, to find those of other pieces near one.
-class ByCube {
-  public:
-    ByCube(const fathom::mesh::Mesh &mesh, const std::vector<std::uint32_t> &piece, double side)
-        : mesh_(mesh), piece_(piece), side_(side) {
-        for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
-            cubes_[cube_of(mesh.vertices[v])].push_back(v);
-    }
-    // Whether a vertex of another piece is no farther from this one than the cubes' side.
-    bool is_beside_another(std::uint32_t vertex) const {
-        const fathom::mesh::Point &at = mesh_.vertices[vertex];
-        const Cube middle = cube_of(at);
-        for (int k = 0; k < 27; ++k) {
-            const auto found = cubes_.find(
-                {middle[0] + k % 3 - 1, middle[1] + k / 3 % 3 - 1, middle[2] + k / 9 - 1});
-            if (found == cubes_.end()) continue;
-            for (const std::uint32_t v : found->second) {
-                const fathom::mesh::Point &p = mesh_.vertices[v];
-                if (piece_[v] != piece_[vertex] &&
-                    std::hypot(p[0] - at[0], p[1] - at[1], p[2] - at[2]) <= side_)
-                    return true;
-            }
-        }
-        return false;
-    }
-
-  private:
-    using Cube = std::array<std::int64_t, 3>;
-    Cube cube_of(const fathom::mesh::Point &p) const {
-        Cube cube;
-        for (std::size_t i = 0; i < 3; ++i)
-            cube[i] = static_cast<std::int64_t>(std::floor(p[i] / side_));
-        return cube;
-    }
-
-    const fathom::mesh::Mesh &mesh_;
-    const std::vector<std::uint32_t> &piece_;
-    double side_;
-    std::map<Cube, std::vector<std::uint32_t>> cubes_;
-};
 
 // Of a mesh in several pieces: where the solid is thinner than cells in all of one that lies beside
 // another, as along a sharp edge, the two may be one.
@@ -90,7 +51,21 @@ std::string advice_on_pieces(const ir::Scene &scene, const fathom::mesh::Setting
     fathom::mesh::Evaluator evaluator(field);
     const fathom::mesh::Lattice &lattice = made.octree.lattice;
     const double side = lattice.side(lattice.level);
-    const ByCube cubes(made.mesh, piece, 2 * side);
+    const double reach = 2 * side; // of what lies beside something
+    fathom::mesh::Grid grid(point_of(lattice, {0, 0, 0}), reach);
+    for (std::uint32_t v = 0; v < piece.size(); ++v) {
+        const fathom::mesh::Real3 at = fathom::mesh::real(made.mesh.vertices[v]);
+        grid.add(at, at, v);
+    }
+    grid.sort();
+    std::vector<std::uint32_t> near;
+    const auto is_beside_another = [&](std::uint32_t vertex) {
+        const fathom::mesh::Real3 at = fathom::mesh::real(made.mesh.vertices[vertex]);
+        grid.find(fathom::mesh::along(at, {1, 1, 1}, -reach),
+                  fathom::mesh::along(at, {1, 1, 1}, reach), near);
+        return std::ranges::any_of(near,
+                                   [&](std::uint32_t v) { return piece[v] != piece[vertex]; });
+    };
     std::vector<double> thick;
     std::size_t splinters = 0;
     for (const std::vector<std::uint32_t> *of : order) {
@@ -98,9 +73,9 @@ std::string advice_on_pieces(const ir::Scene &scene, const fathom::mesh::Setting
         bool beside = false;
         for (std::size_t k = 0; k < looks; ++k) {
             const std::uint32_t v = (*of)[k * of->size() / looks];
-            beside = beside || cubes.is_beside_another(v);
+            beside = beside || is_beside_another(v);
             const double found = thin_at(evaluator, lattice, side, made.mesh.vertices[v]).thickness;
-            if (found > 0 && found < 1.5 * side) thin.push_back(found);
+            if (found > 0 && found < showing * side) thin.push_back(found);
         }
         if (!beside || 3 * thin.size() < 2 * looks) continue;
         ++splinters;
@@ -109,9 +84,10 @@ std::string advice_on_pieces(const ir::Scene &scene, const fathom::mesh::Setting
     if (splinters == 0) return "";
     std::ranges::sort(thick);
     const double where = thick[3 * thick.size() / 4]; // some way off the edge itself
-    return fmt::format("the mesh has {} pieces, of which {} may belong to another: a wall or a "
+    return fmt::format("the mesh has {} pieces, of which {}{} may belong to another: a wall or a "
                        "sharp edge there is about {:.2g} thick{}",
-                       vertices.size(), splinters, where, shown_by(where, lattice, made.box));
+                       vertices.size(), vertices.size() > looked_at + 1 ? "at least " : "",
+                       splinters, where, shown_by(where, lattice, made.box));
 }
 
 } // namespace
