@@ -54,8 +54,13 @@ std::string Builder::doc_above(Index at) const {
         const std::string_view left = all.substr(first, end - first);
         return first + std::min(left.find_first_not_of(" \t\r\f\v;"), left.size());
     };
-    std::size_t begin = line_start(token(at).begin);
-    if (nothing_in(begin, token(at).begin) < token(at).begin) return {};
+    // not from the line's start on: a line may be long, and hold many declarations
+    std::size_t begin = token(at).begin;
+    while (begin > 0 &&
+           std::string_view(" \t\r\f\v;").find(all[begin - 1]) != std::string_view::npos)
+        --begin;
+    if (begin == 3 && all.starts_with("\xEF\xBB\xBF")) begin = 0;
+    if (begin > 0 && all[begin - 1] != '\n') return {};
     std::vector<std::string_view> lines;
     while (begin > 0) {
         const std::size_t above = line_start(begin - 1);

@@ -16,12 +16,12 @@ try() { # NAME COMMAND…
 : >build-weekly/summary
 try clang scripts/clang.sh
 try apart sh -c 'cmake -G Ninja -S . -B build-apart && cmake --build build-apart -- -k 0'
-try effort env FATHOM_EFFORT=4 ctest --test-dir build --output-on-failure -E fuzz
+try effort env FATHOM_EFFORT=8 ctest --test-dir build --output-on-failure -E fuzz
 try floats env FATHOM_EFFORT=997 build/test_cpu 'exp, log and hyperbolic functions*'
 try sanitize scripts/sanitize.sh
 try tidy scripts/tidy.sh
 try argument_order scripts/argument_order.sh
-try same_text scripts/same_text.sh build/fathom build-clang/fathom
+try same_text scripts/same_text.sh build/fathom build-clang/fathom all
 for target in parse_fuzz compile_fuzz agree_fuzz yaml_fuzz save_fuzz image_fuzz lsp_fuzz; do try $target scripts/fuzz.sh $target 600; done
 try cuts env FATHOM_CUTS=all build/test_lsp 'a text that ends early is known above its end'
 try coverage scripts/coverage.sh

@@ -53,7 +53,7 @@ void declare(Interpreter &ev, std::uint32_t frame, Symbol name, Value value, boo
              Span place) {
     Frame &f = ev.frames[frame];
     if (!f.index) {
-        (void)spend(ev, place, f.bindings.size() / 4); // they are searched
+        (void)spend(ev, place, f.bindings.size() / 2); // they are searched
         for (const Binding &b : f.bindings) {
             if (b.name != name || !b.declared.source || !place.source) continue;
             report(ev, Code::DuplicateName, place,

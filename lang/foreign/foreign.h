@@ -186,6 +186,8 @@ class ForeignSyntax : protected TokenReading {
         bool is_centered = false;
     };
     Solid solid_of(Index name, bool certain) const;
+    int faces_of_file() const;
+    mutable std::optional<int> faces_of_file_; // looked for once: a file may have many solids
     bool of_openscad(Index first);
     bool is_openscad() const;
     bool foreign_solid(Index first);

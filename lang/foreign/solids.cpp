@@ -66,6 +66,17 @@ static int faces_of(std::string_view number) {
     return few ? static_cast<int>(*value) : 0;
 }
 
+// The number that the file's last statement `$fn = …` gives all of its solids; 0: none.
+int ForeignSyntax::faces_of_file() const {
+    if (faces_of_file_) return *faces_of_file_;
+    faces_of_file_ = 0;
+    for (Index i = 0; i + 2 < tokens_.tokens.size(); ++i)
+        if (kind(i) == Tok::Bad && text(i) == "$fn" && kind(i + 1) == Tok::Assign &&
+            enclosing(i) == 0)
+            faces_of_file_ = faces_of(text(i + 2));
+    return *faces_of_file_;
+}
+
 // What stands for one of OpenSCAD's shapes; an empty text: nothing, or nothing certain. `certain`
 // where only OpenSCAD writes what stands around it.
 ForeignSyntax::Solid ForeignSyntax::solid_of(Index name, bool certain) const {
@@ -104,10 +115,7 @@ ForeignSyntax::Solid ForeignSyntax::solid_of(Index name, bool certain) const {
             if (is_one_of(kind(i), {Tok::Bad, Tok::Trailing, Tok::Body})) return {};
         given[argument] = value_text(has_name ? from + 2 : from, to);
     }
-    for (Index i = 0; special == 0 && i + 2 < tokens_.tokens.size(); ++i)
-        if (kind(i) == Tok::Bad && text(i) == "$fn" && kind(i + 1) == Tok::Assign &&
-            enclosing(i) == 0)
-            faces = faces_of(text(i + 2));
+    if (special == 0) faces = faces_of_file();
     const auto value = [&](std::string_view argument) -> std::string {
         const auto it = given.find(argument);
         return it == given.end() ? std::string() : it->second;

@@ -1,7 +1,7 @@
 // A random search over what is joined by a length of numbers of known signs, as rounded unions are
 // (lipschitz.md, 2.36); over numbers that `if` keeps in order, as the least and the second of several
 // (2.37), some in the wrong order; and over loops of folds that swap components by comparing them, and
-// turn by the time (2.7). Whatever the checker accepts is measured (judge.h). FATHOM_EFFORT=10 is the
+// turn by the time (2.7). Whatever the checker accepts is measured (judge.h). FATHOM_EFFORT=20 is the
 // long form.
 #include "judge.h"
 
@@ -174,19 +174,19 @@ class Swapped : public Chance {
 } // namespace
 
 TEST_CASE("folds that swap and turn are no steeper than proved") {
-    const Judged judged = judge_scenes<Swapped>(effort(60), 400);
+    const Judged judged = judge_scenes<Swapped>(effort(30), 400);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 2);
 }
 
 TEST_CASE("a length of numbers of known signs is no steeper than proved") {
-    const Judged judged = judge_scenes<Corner>(effort(80), 400);
+    const Judged judged = judge_scenes<Corner>(effort(40), 400);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes * 3 / 4);
 }
 
 TEST_CASE("numbers that are kept in order are refused, or do not jump") {
-    const Judged judged = judge_scenes<Ordered>(effort(60), 400);
+    const Judged judged = judge_scenes<Ordered>(effort(30), 400);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 3);
     CHECK(judged.accepted < judged.scenes);

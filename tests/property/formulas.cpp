@@ -1,6 +1,6 @@
 // A random search over formulas of the whole language: scalars and points made of everything that
 // may stand in a field, with choices, steps and waves whose sides meet, or nearly. Whatever the
-// checker accepts is measured (judge.h). FATHOM_EFFORT=40 is the long form.
+// checker accepts is measured (judge.h). FATHOM_EFFORT=80 is the long form.
 // Long: one grammar, whose rules call each other.
 #include "judge.h"
 #include "tests/support/effort.h"
@@ -314,7 +314,7 @@ class Formula : public Chance {
 } // namespace
 
 TEST_CASE("a formula is refused, or is as flat as proved") {
-    const Judged judged = judge_scenes<Formula>(effort(250), 3000);
+    const Judged judged = judge_scenes<Formula>(effort(125), 3000);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 6);
 }

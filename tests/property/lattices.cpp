@@ -1,6 +1,6 @@
 // A random search over grids of hexagons by two lattices, written as people write them and off by a
 // little, and over folds of an angle inside of others and twists by a part of a turn. Whatever the
-// checker accepts is measured (judge.h). FATHOM_EFFORT=10 is the long form.
+// checker accepts is measured (judge.h). FATHOM_EFFORT=20 is the long form.
 #include "judge.h"
 #include "tests/support/effort.h"
 
@@ -155,14 +155,14 @@ class Turned : public NearlyRight {
 } // namespace
 
 TEST_CASE("hexagons of two lattices are refused, or do not jump") {
-    const Judged judged = judge_scenes<Hexagons>(effort(120), 1000);
+    const Judged judged = judge_scenes<Hexagons>(effort(60), 1000);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 4);
     CHECK(judged.accepted < judged.scenes * 9 / 10);
 }
 
 TEST_CASE("folds and twists of angles are refused, or do not jump") {
-    const Judged judged = judge_scenes<Turned>(effort(60), 600);
+    const Judged judged = judge_scenes<Turned>(effort(30), 600);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 5);
     CHECK(judged.accepted < judged.scenes * 9 / 10);

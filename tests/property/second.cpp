@@ -36,7 +36,7 @@ void check_again(const std::string &name, driver::Compilation c, Counts &counts)
     // Steps by cells are as long as is safe, and no slope of anything.
     c.scene.cells.clear();
     ir::lower(c.scene);
-    const long work = test::effort(10'000); // nodes that it evaluates
+    const long work = test::effort(4'000); // nodes that it evaluates
     std::array<double, 3> lo{-4, -4, -4}, hi{4, 4, 4};
     if (!c.scene.bounds.empty())
         for (std::size_t k = 0; k < 3; ++k) {

@@ -1,7 +1,7 @@
 // A random search over tilings: cells that a hash mirrors, turns or draws in another way, cells whose
 // neighbours are looked at, and waves that a hash scales. Many are off by a little, so that they
 // jump at the borders of their cells. Whatever the checker accepts is measured there (judge.h).
-// FATHOM_EFFORT=10 is the long form.
+// FATHOM_EFFORT=20 is the long form.
 #include "judge.h"
 #include "tests/support/effort.h"
 
@@ -167,7 +167,7 @@ class Tiling : public Chance {
 } // namespace
 
 TEST_CASE("a tiling is refused, or does not jump where its cells meet") {
-    const Judged judged = judge_scenes<Tiling>(effort(200), 1000);
+    const Judged judged = judge_scenes<Tiling>(effort(100), 1000);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 5);
     CHECK(judged.accepted < judged.scenes * 4 / 5);

@@ -575,7 +575,7 @@ class Search {
     Result run(long work) {
         bound(work);
         climb();
-        halve();
+        halve(std::max(24L, work / 160));
         out_.at_most = std::max(out_.at_most, out_.seen);
         return out_;
     }
@@ -681,8 +681,8 @@ class Search {
     }
 
     // What jumps has no gradient there: the half of a way on which more changes, again and again.
-    void halve() {
-        for (int i = 0; i < 64; ++i) {
+    void halve(long pairs) {
+        for (long i = 0; i < pairs; ++i) {
             Point a, b;
             for (std::size_t k = 0; k < 3; ++k) {
                 a[k] = (lo_[k] + hi_[k]) / 2 + (hi_[k] - lo_[k]) / 2 * random();
@@ -705,7 +705,7 @@ class Search {
 };
 
 // Of a function (vec3) -> float over a box, at the params' present values and one time; `work`
-// nodes may be evaluated to bound it, and some thousand points are tried.
+// nodes may be evaluated to bound it, and some thousand points are tried, more where `work` is more.
 inline Result slopes(const ir::Scene &scene, ir::FunctionId function, double time,
                      const std::array<double, 3> &lo, const std::array<double, 3> &hi, long work) {
     return Search(scene, function, time, lo, hi).run(work);

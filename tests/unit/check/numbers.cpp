@@ -265,8 +265,8 @@ TEST_CASE("a number in every numeric place is refused there, or means something"
         CHECK((constant || asked.count(e.name) == 1));
         CHECK((constant || documented.count(e.name) == 1));
     }
-    // The places take turns with the numbers; FATHOM_EFFORT=3 tries every number in every place.
-    const std::size_t stride = test::effort(1) >= 3 ? 1 : 3;
+    // The places take turns with the numbers; FATHOM_EFFORT=6 tries every number in every place.
+    const std::size_t stride = test::effort(1) >= 6 ? 1 : 6;
     std::size_t asked_texts = 0;
     for (const Entry &e : entries) {
         const auto numbers = numbers_of(e.text);
