@@ -134,6 +134,7 @@ driver::CompileOptions driver_options(const CompileOptions &options) {
     to.strict_proof = options.strict_proof;
     if (options.times) to.times = {(*options.times)[0], (*options.times)[1]};
     to.cells = options.cells;
+    if (const auto &cut = options.section) to.section = {{cut->axis, cut->from, cut->to}};
     to.flat_thickness = options.flat_thickness;
     to.fields = options.fields;
     if (options.cache.impl()) to.bounds = &options.cache.impl()->bounds;

@@ -4,6 +4,8 @@
 
 #include "base/limits.h"
 
+#include <fathom/scene.h>
+
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -87,6 +89,7 @@ struct RenderCommand {
     std::vector<Sweep> sweeps;
     int turntable = 0;                        // frames of one turn of the camera; 0: it stays
     std::pair<int, int> sheet;                // columns and rows of a contact sheet; 0: none
+    std::optional<v1::Section> section;       // the picture's scene is cut open
     double shutter = 0;                       // how much of a frame's length it is open, 0 to 1
     int first_sample = 0, samples = 0;        // 0 samples: one, and more where a pixel is rough
     bool part_of_samples = false;             // they were given as a range

@@ -4,6 +4,7 @@
 #include "base/text.h"
 
 #include "cli/parts.h"
+#include "cli/words.h"
 #include <fathom/files.h>
 #include <fathom/reference.h>
 
@@ -113,6 +114,7 @@ std::string identity_of_film(const v1::CompileResult &result, const RenderComman
                               command.turntable, format_shortest(command.shutter),
                               command.max_steps, maker));
     if (command.alpha) append(bytes, "alpha");
+    if (command.section) append(bytes, word_of_section(*command.section));
     return fingerprint(bytes);
 }
 

@@ -79,6 +79,9 @@ std::vector<OptionRow> picture_rows(RenderCommand &command) {
         {"--max-steps", "N",
          "evaluations that a ray may take, whatever the scene says; 65536 unless said",
          whole(command.max_steps, 1, 100'000'000)},
+        {"--section", "z=A..B",
+         "cut the scene open across an axis: keep what lies between; one end may be left out",
+         [&](const std::string &word) { return read_section(word, command.section); }},
         {"--alpha",
          "",
          "no background: a PNG or EXR that is transparent there",
@@ -152,6 +155,8 @@ std::vector<std::string> words_of_pictures(const RenderCommand &command) {
     add(command.time != usual.time, "--time", format_shortest(command.time));
     add(command.samples != usual.samples, "--samples", fmt::format("{}", command.samples));
     add(command.max_steps != usual.max_steps, "--max-steps", fmt::format("{}", command.max_steps));
+    add(command.section.has_value(), "--section",
+        command.section ? word_of_section(*command.section) : "");
     if (command.alpha) words.emplace_back("--alpha");
     if (command.strict) words.emplace_back("--strict");
     add(command.jobs != usual.jobs, "--jobs", fmt::format("{}", command.jobs));

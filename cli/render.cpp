@@ -113,6 +113,7 @@ Exit compile(Work &work, const std::vector<int> &frames) {
                  last = latest_time(command, frames);
     v1::CompileOptions options = library_options(command.scene, first, last);
     options.cells = cells_of_pictures;
+    options.section = command.section;
     if (!command.sweeps.empty())
         for (const Definition &value : swept(command, frames.front()))
             options.definitions[value.name] = value.text;

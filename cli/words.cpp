@@ -143,6 +143,38 @@ std::string read_sweep(const std::string &word, std::vector<Sweep> &sweeps) {
     return "";
 }
 
+std::string read_section(const std::string &word, std::optional<v1::Section> &section) {
+    const std::size_t dots = word.find("..");
+    const std::size_t axis = word.empty() ? word.npos : std::string_view("xyz").find(word[0]);
+    v1::Section read;
+    bool good = axis != word.npos && word.size() > 4 && word[1] == '=' && dots != word.npos;
+    const auto end = [&](std::string_view text, double &height) {
+        if (text.empty()) return;
+        const std::optional<double> number = read_coordinate(text);
+        good = good && number;
+        height = number.value_or(0);
+    };
+    if (good) {
+        read.axis = static_cast<int>(axis);
+        end(std::string_view(word).substr(2, dots - 2), read.from);
+        end(std::string_view(word).substr(dots + 2), read.to);
+    }
+    if (!good || !(read.from < read.to))
+        return fmt::format(
+            "a section is AXIS=A..B: z=..0.5 keeps what lies below 0.5, z=0.5.. what "
+            "lies above, x=-1..1 what lies between, not `{}`",
+            word);
+    section = read;
+    return "";
+}
+
+std::string word_of_section(const v1::Section &section) {
+    const auto end = [](double height) {
+        return std::isfinite(height) ? format_shortest(height) : std::string();
+    };
+    return fmt::format("{}={}..{}", "xyz"[section.axis], end(section.from), end(section.to));
+}
+
 std::string read_samples(const std::string &word, RenderCommand &command) {
     constexpr int most = 256;
     const std::optional<Range> range = range_of(word);

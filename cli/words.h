@@ -25,6 +25,9 @@ std::string read_frames(const std::string &word, FrameList &frames);
 std::string read_heights(const std::string &word, std::vector<double> &heights);
 // name=0..1 and name=0..=1: two finite numbers.
 std::string read_sweep(const std::string &word, std::vector<Sweep> &sweeps);
+// z=0.5..2, z=..0.5, z=0.5..: what is kept of a scene that is cut open.
+std::string read_section(const std::string &word, std::optional<v1::Section> &section);
+std::string word_of_section(const v1::Section &section); // the same, to be read again
 // 16, or 4..8 and 4..=7: samples of a pixel, 0 to 256.
 std::string read_samples(const std::string &word, RenderCommand &command);
 std::string read_tile(const std::string &word, std::optional<std::pair<int, int>> &tile); // 0/4

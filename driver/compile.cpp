@@ -156,6 +156,7 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
     out.evaluations += checked.evaluations;
     if (effort.stop.now()) return cancel(out);
     if (checked.over_limit || options.types_alone) return;
+    if (options.section) ir::cut_open(out.scene, *options.section);
     // What checked is proved also where other statements did not: all errors in one run.
     enter(options, Phase::Prove);
     proof::Options proof_options;

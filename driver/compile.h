@@ -4,6 +4,7 @@
 
 #include "driver/files.h"
 #include "ir/lower/lower.h"
+#include "ir/section.h"
 #include "proof/bound_cache.h"
 #include "proof/present_bounds.h"
 #include "save-format/save_format.h"
@@ -43,10 +44,11 @@ struct CompileOptions {
     // Bounds by cells of what is marched and steep, so many along a side at most (proof/prove.h):
     // for what is drawn. 0: none but those of fields in a region.
     int cells = 0;
-    bool present_bounds = false;       // for a host that proves bounds anew while params move
-                                       // (proof/present_bounds.h)
-    double flat_thickness = 0;         // as typecheck::Options has it
-    std::vector<std::string> fields{}; // too
+    bool present_bounds = false;          // for a host that proves bounds anew while params move
+                                          // (proof/present_bounds.h)
+    std::optional<ir::Section> section{}; // cut open there, before it is proved
+    double flat_thickness = 0;            // as typecheck::Options has it
+    std::vector<std::string> fields{};    // too
     // The scene's own text where it is being typed and not saved yet; compile_file reads it in place
     // of the file's.
     std::optional<std::string> unsaved{};

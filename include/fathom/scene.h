@@ -29,6 +29,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -130,6 +131,14 @@ class FATHOM_API ProofCache {
  *  present value is tried. */
 enum class Phase { Read, Check, Prove, Lower, Done };
 
+/** What is kept of a scene that is cut open: what lies between two planes across an axis, each in the
+ *  scene's units. An infinite one cuts nothing off. */
+struct Section {
+    int axis = 2; /**< 0 to 2: x to z */
+    double from = -std::numeric_limits<double>::infinity();
+    double to = std::numeric_limits<double>::infinity();
+};
+
 struct CompileOptions {
     /** Folders where imports are looked for, after the scene's own. */
     std::vector<std::filesystem::path> include_folders;
@@ -158,6 +167,9 @@ struct CompileOptions {
      *  more. A field then takes longer steps, and a compilation longer. The program takes 16 for
      *  pictures and 8 for texts of shaders, which hold the cells. 0: none. */
     int cells = 0;
+    /** Cut open, for pictures of what is inside: the solid is the part that is kept, and the faces of
+     *  the cut are orange. Facts are those of that part. */
+    std::optional<Section> section;
     /** Above 0: the scene is a drawing. Its flat shapes (`shape2`), which else are an error, are what
      *  there is, as solids that thick about z = 0: `slice` at z = 0 gives their outlines. Solids are
      *  an error then. */

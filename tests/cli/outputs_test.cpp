@@ -99,6 +99,35 @@ TEST_CASE("a picture is of the kind that its suffix says") {
     CHECK(folder.files() == before);
 }
 
+TEST_CASE("a section shows what lies inside, as the text that cuts the solid does") {
+    OutputScenes folder;
+    const std::string solid = "sphere(1).shell(0.2).paint(blue)",
+                      camera = "camera(at: [1, 2, 5])\n";
+    folder.write("whole.sdf", camera + solid);
+    folder.write("cut.sdf",
+                 camera + "(" + solid +
+                     ") & plane(Z, 0.25).paint(material(diffuse: #e5793f, specular: black))");
+    const auto rendered = [&](const std::string &words) {
+        const std::string line = "fathom render --size 64x48 --samples 1 --backend cpu -o a.png ";
+        REQUIRE(shell(folder, line + words).exit == 0);
+        return fathom::decode_png(folder.read("a.png"))->rgba;
+    };
+    const auto whole = rendered("whole.sdf"), cut = rendered("cut.sdf"),
+               section = rendered("whole.sdf --section z=..0.25");
+    std::size_t orange = 0, differ = 0;
+    for (std::size_t i = 0; i < whole.size(); i += 4) {
+        orange += section[i] > section[i + 2] + 60;
+        for (std::size_t k = i; k < i + 3; ++k) differ += std::abs(cut[k] - section[k]) > 2;
+    }
+    CHECK(orange > 40);
+    CHECK(differ < 10); // of 9,216 numbers: pixels on the rim
+    CHECK(rendered("whole.sdf --section z=-3..4") == whole);
+    for (const char *wrong : {"z=1", "w=..1", "z=..", "z=2..1", "z=0..0", "z=a..", "z"})
+        CHECK(contains(
+            shell(folder, std::string("fathom render whole.sdf -o a.png --section ") + wrong).err,
+            "a section is AXIS=A..B"));
+}
+
 TEST_CASE("a JPEG shows the picture that the PNG shows, as finely as is asked") {
     OutputScenes folder;
     const std::string line = "fathom render good.sdf --size 64x48 --backend cpu ";
