@@ -2,6 +2,7 @@
 // exceeded and nearly reached, though the powers' own have no bound.
 #include "build.h"
 
+#include "tests/support/effort.h"
 #include "tests/support/reference_eval.h"
 
 #include <catch2/catch.hpp>
@@ -102,7 +103,7 @@ TEST_CASE("no sum of what falls is steeper than proved, whatever it is made of")
     const auto any = [&](double lo, double hi) {
         return std::uniform_real_distribution(lo, hi)(random);
     };
-    for (int trial = 0; trial < 200; ++trial) {
+    for (int trial = 0; trial < effort(100); ++trial) {
         Falling b;
         Graph &g = b.g;
         NodeId sum = b.n(0);
