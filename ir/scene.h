@@ -211,8 +211,8 @@ struct Scene {
     ShapeId root; // the union of the top-level shapes
     std::vector<TopLevel> top_level;
     std::vector<Condition> conditions;
-    // Where the user's own fields say what may jump or be infinite: by node, of a choice by its
-    // condition. For messages alone; the first few thousand.
+    // Where the user's own fields say what may jump or be infinite, and loops: by node, of a choice
+    // by its condition. For messages alone; the first few thousand.
     std::unordered_multimap<NodeId, Span> places;
     std::vector<ShapeFact> facts; // by ShapeId; filled by the analysis
     // Of shapes whose marched field has bounds that differ much from cell to cell: of a Within its

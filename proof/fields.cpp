@@ -29,14 +29,7 @@ using ir::rounding::infinity;
 Diagnostic *Prover::report(ShapeId id, Code code, std::string message) {
     if (!place(id).reported) return nullptr;
     if (work.spent()) { // what was not proved might be with more of it
-        if (std::exchange(told_of_work, true)) return nullptr;
-        code = Code::ProofLimit;
-        message = "the proof of this scene takes more work than is allowed";
-    }
-    if (code == Code::ProofLimit) {
-        diagnostics.add(code, scene.shapes[id].origin, std::move(message))
-            .note(options.limit_note)
-            .help(options.limit_help);
+        if (!std::exchange(told_of_work, true)) report_limit(id);
         return nullptr; // for the caller's own words: they are of something else
     }
     return &diagnostics.add(code, scene.shapes[id].origin, std::move(message));

@@ -268,6 +268,7 @@ Prover::Blamed Prover::blame(ShapeId id, const FieldBound &bound) {
     std::vector<Span> alike;
     for (const Suspect &suspect : suspects.found) {
         const Op op = graph[suspect.node].op;
+        if (op == Op::Loop && bound.cause != Op::Loop) continue; // what it holds may be to blame
         const bool alike_op = !grows && (!bound.cause || op == *bound.cause);
         if (!alike_op && (op != Op::Div || bound.trouble == Trouble::Jump)) continue;
         if (alike_op) alike.insert(alike.end(), suspect.at.begin(), suspect.at.end());

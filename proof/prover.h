@@ -47,6 +47,8 @@ struct Prover {
     std::size_t spare_work = 0;        // for all of these, beside `work`
     std::size_t deformed = 0;          // how many shapes are twisted, bent, tapered or distorted
     bool told_of_work = false;
+    std::vector<std::size_t> spent; // steps of `work`, by shape, of those that are known
+    std::size_t left_before = 0;    // of `work`, when the one after these was begun
 
     Prover(ir::Scene &s, Diagnostics &d, const Options &o)
         : scene(s), diagnostics(d), options(o),
@@ -192,6 +194,7 @@ struct Prover {
     // -- reports; silent where the shape is not reported
     static std::string cheaper(const ir::Shape &shape);
     Diagnostic *report(ir::ShapeId id, Code code, std::string message);
+    void report_limit(ir::ShapeId id); // dearest.cpp: names what took most of the work
     // What of the shape's field is to blame for what was found of it, and where it is written, where
     // either is seen: places.cpp.
     struct Blamed {

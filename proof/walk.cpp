@@ -84,6 +84,7 @@ void Prover::run() {
     for (std::size_t i = 0; i < count; ++i) {
         constexpr std::size_t steps_of_a_shape = 50; // in time
         work.pass(steps_of_a_shape);
+        left_before = work.left;
         Derived k = derived.front();
         if (places[i].reached) { // what is never evaluated keeps facts that say nothing
             k = know(ShapeId{i});
@@ -101,6 +102,7 @@ void Prover::run() {
             known[i] = static_cast<std::uint32_t>(derived.size());
             derived.push_back(k);
         }
+        spent.push_back(left_before - work.left);
         scene.facts[i] = k.fact; // padded there alone, so that the slack does not add up
         scene.facts[i].bounds = padded(k.fact.bounds);
         scene.facts[i].repeat.copy = padded(k.fact.repeat.copy);

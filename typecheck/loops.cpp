@@ -4,6 +4,7 @@
 // scene time, say), the iterations are written out one by one.
 #include "typecheck/conditions.h"
 #include "typecheck/interpreter.h"
+#include "typecheck/places.h"
 
 #include "ir/lower/lower.h"
 #include "ir/passes/loop_parts.h"
@@ -83,6 +84,7 @@ std::optional<Value> symbolic_item(Interpreter &ev, const Iterations &iterations
 struct LoopInput {
     int count = 0;
     ir::NodeId index;
+    Span head; // what stands before the body
     std::function<std::optional<Value>()>
         condition;              // evaluated before each iteration; none: always true
     std::function<Exit()> body; // with the index set
@@ -280,7 +282,11 @@ std::optional<Exit> try_loop(Interpreter &ev, const LoopInput &input,
         ir::LoopId id = g.add_loop(std::move(loop));
         ir::NodeId node = g.make(Op::Loop, g[vars[0]].type, initial, id.index);
         if (takes_too_long(ev, node, place)) return Exit{};
-        auto result = [&](std::size_t k) { return ir::loop_result(g, node, k); };
+        auto result = [&](std::size_t k) {
+            const ir::NodeId out = ir::loop_result(g, node, k);
+            note_loops(ev, out, input.head);
+            return out;
+        };
         for (std::size_t k = 0; k < carried.size(); ++k)
             assign(ev, carried[k].frame, carried[k].slot,
                    from_node(ev, result(k), carried[k].variable.color));
@@ -334,6 +340,7 @@ Outcome run_for(Interpreter &ev, const File &ast, const lang::For &node, std::ui
             LoopInput input;
             input.count = iterations.count;
             input.index = ev.scene.graph.fresh_var(Type::Int);
+            input.head = {place.source, place.begin, ast.exprs[node.sequence].span.end};
             if (auto item = symbolic_item(ev, iterations, input.index)) {
                 input.body = [&] { return iteration(*item); };
                 if (auto folded = try_loop(ev, input, changes, place)) {
@@ -422,6 +429,7 @@ Outcome run_while(Interpreter &ev, const File &ast, const lang::While &node, std
             input.count = node.limit ? limit - i : max_loop_iterations;
             input.has_limit = node.limit.has_value();
             input.index = ev.scene.graph.fresh_var(Type::Int);
+            input.head = {place.source, place.begin, condition_place.end};
             input.condition = condition;
             input.body = iteration;
             if (auto folded = try_loop(ev, input, changes, place)) {

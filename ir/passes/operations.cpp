@@ -59,6 +59,10 @@ class Counter {
 
 double operations(const Graph &graph, NodeId root) { return Counter(graph)({root}); }
 
+double operations(const Graph &graph, std::vector<NodeId> roots) {
+    return Counter(graph)(std::move(roots));
+}
+
 std::size_t functions_called(const Graph &graph, std::vector<NodeId> roots) {
     Counter count(graph);
     count(std::move(roots));

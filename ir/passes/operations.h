@@ -9,6 +9,7 @@ namespace fathom::ir {
 
 // How many operations, loops by their largest number of iterations and calls by what they call.
 double operations(const Graph &graph, NodeId root);
+double operations(const Graph &graph, std::vector<NodeId> roots); // what they share counts once
 // How many functions the expressions call, each counted once.
 std::size_t functions_called(const Graph &graph, std::vector<NodeId> roots);
 
