@@ -3,9 +3,11 @@
 // (border_cases.h).
 #include "proof/borders.h"
 
+#include "ir/passes/walk.h"
 #include "proof/border_cases.h"
 #include "proof/continuity.h"
 #include "proof/discontinuities.h"
+#include "proof/exact.h"
 
 #include <algorithm>
 #include <optional>
@@ -110,6 +112,43 @@ bool meets(NodeId field, Graph &graph, NodeId choice, NodeId of, Looked &looked)
     return std::all_of(claims.begin(), claims.end(), [&](const Claim &claim) {
         return is_proved_of(field, graph, claim, looked);
     });
+}
+
+// Is the choice all of an expression that may turn?
+bool turns_alone(const Graph &graph, NodeId choice, NodeId of) {
+    constexpr ir::OpSet others{Op::Atan2, Op::TableRead,  Op::Image, Op::Grid,
+                               Op::Loop,  Op::LoopResult, Op::Call,  Op::Cached};
+    std::vector<NodeId> todo{of};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second || seen.size() > max_nodes_of_field) continue;
+        const ir::Node node = graph[id];
+        const bool varies = graph.reads(id).point || graph.reads(id).free_vars;
+        const bool turns = node.type == ir::Type::Bool || is_choice[node.op] ||
+                           tells_apart[node.op] || others[node.op];
+        if (id != choice && varies && turns) return false;
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    return seen.size() <= max_nodes_of_field;
+}
+
+// Of a sign or a `step` that turns alone: is `of` the same by each of its values, where it turns?
+bool meets_as_arms(Graph &graph, NodeId choice, NodeId of, Work &work) {
+    const ir::Node node = graph[choice];
+    if (node.op == Op::Select || node.type != ir::Type::Float ||
+        graph[of].type != ir::Type::Float || !turns_alone(graph, choice, of))
+        return false;
+    const bool is_sign = node.op == Op::Sign;
+    const NodeId u = graph.arg(choice, is_sign ? 0 : 1),
+                 v = is_sign ? graph.number(0) : graph.arg(choice, 0);
+    const auto by = [&](double value) {
+        return ir::substitute(graph, of, {{choice, graph.number(value)}});
+    };
+    const NodeId above = by(1), below = by(is_sign ? -1 : 0);
+    return agree_where_equal(graph, u, v, above, below, work) &&
+           (!is_sign || agree_where_equal(graph, u, v, above, by(0), work));
 }
 
 // `b <= a` of `a < b`, and `b < a` of `a <= b`: it is true where that is not.
@@ -242,7 +281,8 @@ Meeting find_choices(Flattening &context, NodeId root) {
         NodeId of = graph[choice].op == Op::Select ? choice : field.through[choice];
         for (int climb = 0; climb < max_climb && looked.cases < max_cases_of_field; ++climb) {
             const Apart moved = looked.moved;
-            if (meets(root, graph, choice, of, looked)) {
+            if (meets_as_arms(graph, choice, of, context.work) ||
+                meets(root, graph, choice, of, looked)) {
                 out.choices.insert(choice);
                 break;
             }

@@ -161,7 +161,9 @@ bool is_between_turns(const Graph &graph, Op op, const std::vector<NodeId> &args
     return true;
 }
 
-// The arms for u = v: u replaced by v, v by u, or one atom of u - v by what the others make it.
+} // namespace
+
+// Tried with u replaced by v, v by u, or one atom of u - v by what the others make it.
 bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b, Work &work) {
     const std::vector<NodeId> steps = steps_in(graph, a, b);
     auto agree = [&](NodeId from, NodeId to) {
@@ -213,8 +215,6 @@ bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b, Wor
     }
     return false;
 }
-
-} // namespace
 
 std::optional<Solved> solved(Graph &graph, NodeId scalar, NodeId is) {
     const auto sum = polynomial(graph, scalar);

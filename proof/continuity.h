@@ -17,6 +17,10 @@ class Expansion; // polynomials.h: what many sums are asked of
 // and b are. Takes its steps off `work`; without any left nothing is proved.
 bool arms_agree(ir::Graph &graph, ir::NodeId condition, ir::NodeId a, ir::NodeId b, Work &work);
 
+// True where two expressions of the point, each continuous, are proved equal wherever u and v are.
+bool agree_where_equal(ir::Graph &graph, ir::NodeId u, ir::NodeId v, ir::NodeId a, ir::NodeId b,
+                       Work &work);
+
 // One component of a vector, written with scalars as far as that goes.
 ir::NodeId component_of(ir::Graph &graph, ir::NodeId vector, int i);
 // One entry of a matrix that is a constant, or made of scalars or of columns; else nothing.

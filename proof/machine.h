@@ -178,6 +178,7 @@ class Machine {
     void hold_along(const Instruction &instruction);
     void hold_univariate(const Instruction &instruction);
     void hold_angle(const Instruction &instruction);
+    void hold_triangle(const Instruction &instruction);
     void fail(const Instruction &instruction, Trouble why);
     void copy(Slot from, Slot to);
     void join(Slot into, Slot other, bool jump, NodeId cause);

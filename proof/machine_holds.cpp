@@ -139,6 +139,23 @@ void Machine::hold_angle(const Instruction &instruction) {
     keep_far(out, 0, known);
 }
 
+// asin(sin u), and the like of cosines, is a triangle wave of u: as steep as u, also at its corners,
+// where its parts are not.
+void Machine::hold_triangle(const Instruction &instruction) {
+    const Slot out = instruction.out;
+    const Instruction *wave = maker(instruction.args[0]);
+    if (!wave || (wave->op != Op::Sin && wave->op != Op::Cos) || wave->form != Form::Plain) return;
+    const Slot of = wave->args[0];
+    if (tape_.size[of] != tape_.size[out] || trouble_[out] == Trouble::Overflow) return;
+    for (std::uint32_t i = 0; i < tape_.size[of]; ++i)
+        if (odd_[tape_.first[of] + i]) return;
+    if (!(norm_[of] < norm_[out])) return;
+    trouble_[out] = Trouble::None;
+    cause_[out] = NodeId();
+    pole_[out] = 0;
+    hold_norm(out, norm_[of]);
+}
+
 namespace {
 
 // Of a polynomial, the lowest power first, and of its derivative over an interval: by Horner's rule

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <unordered_set>
 
 namespace fathom::proof {
 
@@ -323,6 +324,31 @@ NodeId with_signed_roots(Graph &graph, NodeId root) {
             const NodeId below = graph.arg(size, 0), d = graph.arg(sign, 0);
             if (graph[below].op != Op::Abs || graph.arg(below, 0) != d) continue;
             if (const auto other = signed_root(graph, d)) map[id] = *other;
+        }
+    }
+    return map.empty() ? root : ir::substitute(graph, root, map);
+}
+
+NodeId with_chosen_factors(Graph &graph, NodeId root) {
+    constexpr std::size_t max_nodes = 4000;
+    ir::Substitution map;
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        if (seen.size() > max_nodes) return root;
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+        if (graph[id].op != Op::Mul) continue;
+        for (int i = 0; i < 2; ++i) {
+            NodeId factor = graph.arg(id, i);
+            const NodeId other = graph.arg(id, 1 - i);
+            if (graph[factor].op == Op::Splat) factor = graph.arg(factor, 0);
+            if (graph[factor].op != Op::ToFloat || !graph.reads(other).point) continue;
+            const NodeId truth = graph.arg(factor, 0);
+            if (graph[truth].type != ir::Type::Bool || !graph.reads(truth).point) continue;
+            map[factor] = graph.make(Op::Select, {truth, graph.number(1), graph.number(0)});
         }
     }
     return map.empty() ? root : ir::substitute(graph, root, map);

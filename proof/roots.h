@@ -32,4 +32,8 @@ ir::NodeId with_squares_compared(ir::Graph &graph, ir::NodeId root);
 // agree where the choice turns: as the choice of the lengths, all over the expression below `root`.
 ir::NodeId with_chosen_lengths(ir::Graph &graph, ir::NodeId root, Work &work);
 
+// A truth as a number that something else is multiplied by, `float(u > 0) * f`: as the choice of 1 and
+// 0, all over the expression below `root`.
+ir::NodeId with_chosen_factors(ir::Graph &graph, ir::NodeId root);
+
 } // namespace fathom::proof

@@ -316,6 +316,7 @@ Tape flattened(Flattening &context, NodeId root, bool unwound, const Cell *regio
     if (const auto it = context.written.find(root); it != context.written.end()) root = it->second;
     root = written_out(context.graph, root); // forms are seen through calls
     if (unwound) root = ir::without_loops(context.graph, root, max_nodes_unwound).root;
+    root = with_chosen_factors(context.graph, root);
     root = with_half_waves(context.graph, with_squares_compared(context.graph, root));
     root = with_chosen_lengths(context.graph, root, context.work);
     const bool steps = has_steps(context.graph, root),

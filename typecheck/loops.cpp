@@ -283,9 +283,7 @@ std::optional<Exit> try_loop(Interpreter &ev, const LoopInput &input,
         ir::NodeId node = g.make(Op::Loop, g[vars[0]].type, initial, id.index);
         if (takes_too_long(ev, node, place)) return Exit{};
         auto result = [&](std::size_t k) {
-            const ir::NodeId out = ir::loop_result(g, node, k);
-            note_loops(ev, out, input.head);
-            return out;
+            return with_noted_loops(ev, ir::loop_result(g, node, k), input.head);
         };
         for (std::size_t k = 0; k < carried.size(); ++k)
             assign(ev, carried[k].frame, carried[k].slot,

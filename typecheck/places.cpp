@@ -33,8 +33,8 @@ void note_place(Interpreter &ev, const Value &value, Span place) {
     note(ev, node, place);
 }
 
-void note_loops(Interpreter &ev, ir::NodeId last, Span head) {
-    if (!is_noted(ev)) return;
+ir::NodeId with_noted_loops(Interpreter &ev, ir::NodeId last, Span head) {
+    if (!is_noted(ev)) return last;
     const ir::Graph &graph = ev.scene.graph;
     std::vector<ir::NodeId> todo{last};
     while (!todo.empty()) { // parts, then results, then loops
@@ -45,6 +45,7 @@ void note_loops(Interpreter &ev, ir::NodeId last, Span head) {
         else if (graph[node].op == ir::Op::LoopResult || graph[node].op == ir::Op::Make)
             todo.insert(todo.end(), graph.args(node).begin(), graph.args(node).end());
     }
+    return last;
 }
 
 } // namespace fathom::typecheck

@@ -1,6 +1,7 @@
 // A random search over sums of powers and their roots, as power smooth minima and maxima are
 // (lipschitz.md, 2.40): powers of whole, broken and negative exponents and of params, of numbers that
-// may be 0, joined by sums, quotients and inverses, and roots of these that fit, or nearly.
+// may be 0, joined by sums, quotients and inverses, and roots of these that fit, or nearly. And over
+// signs times functions of what they are of, which are 0 there, or nearly (2.1).
 // Whatever the checker accepts is measured (judge.h). FATHOM_EFFORT=10 is the long form.
 #include "judge.h"
 
@@ -91,7 +92,65 @@ class PowerMean : public Chance {
     }
 };
 
+class SignedFunction : public Chance {
+  public:
+    using Chance::Chance;
+
+    std::string scene() {
+        std::string out = "implicit(p => {\n  let u = " + turning() +
+                          "\n  let w = " + of({"1", "cos(p.y)", "(1 + 0.2 * p.z)", "length(p)"}) +
+                          "\n  ";
+        const std::string sign = this->sign();
+        switch (pick(6)) {
+        case 0: out += "let d = " + sign + " * " + function() + " + " + function(); break;
+        case 1: out += "let d = " + sign + " * w * " + function(); break;
+        case 2: out += "let d = " + sign + " * " + function() + " * " + this->sign(); break;
+        case 3: out += "let d = " + sign + " * (" + function() + " + " + function() + ")"; break;
+        default: out += "let d = " + sign + " * " + function(); break;
+        }
+        return out + "\n  " + of({"d", "d - 0.1", "max(d, length(p) - 1)", "0.3 * d + p.y"}) +
+               "\n}, within: ball(2))\n";
+    }
+
+  private:
+    std::string turning() {
+        return of({"p.x", "p.x + 0.3 * p.y", "length(p) - 1", "p.y - 0.2 * sin(3 * p.x)",
+                   "sin(2 * p.x)", "dot(p, p) - 1", "p.x * p.y", "p.x - time * 0.1"});
+    }
+    std::string sign() {
+        if (pick(8) == 0) return of({"(if u < 0 { 1 } else { 0 })", "step(0, u)", "sign(p.y)"});
+        return of({"sign(u)", "sign(u)", "sign(-u)", "(2 * step(0, u) - 1)", "sign(2 * u)"});
+    }
+    std::string function() {
+        const std::string k = between(0.5, 4), off = pick(6) == 0 ? between(0.9, 1.1) : "1";
+        switch (pick(13)) {
+        case 11: // steps of single precision at the corners are 4.9e-4
+            return of({"0.1 * asin(sin(9 * u))", "0.1 * acos(cos(8 * u))",
+                       "0.1 * asin(cos(10 * u))"});
+        case 0: return "log(abs(u) + sqrt(u * u + " + off + "))";
+        case 1: return "log(" + off + " + " + k + " * abs(u))";
+        case 2: return "(" + off + " - exp(-" + k + " * abs(u)))";
+        case 3: return "pow(abs(u), " + between(1, 3) + ")";
+        case 4: return "(sqrt(abs(u) + 1) - " + off + ")";
+        case 5: return "tanh(" + k + " * abs(u))";
+        case 6: return "atan(" + k + " * abs(u))";
+        case 7: return "(" + off + " - cos(" + k + " * u))";
+        case 8: return "smoothstep(0, " + k + ", abs(u))";
+        case 9: return "exp2(abs(u))";
+        case 10: return "(cosh(u) - " + off + ")";
+        default: return "abs(u) / (" + k + " + abs(u))";
+        }
+    }
+};
+
 } // namespace
+
+TEST_CASE("signs times functions are refused, or do not jump") {
+    const Judged judged = judge_scenes<SignedFunction>(effort(60), 800);
+    CHECK(judged.wrong == 0);
+    CHECK(judged.accepted > judged.scenes / 4);
+    CHECK(judged.accepted < judged.scenes);
+}
 
 TEST_CASE("roots of sums of powers are refused, or are no steeper than proved") {
     const Judged judged = judge_scenes<PowerMean>(effort(40), 1200);
