@@ -51,6 +51,13 @@ std::optional<double> even(const Graph &graph, NodeId id) {
     return c.value[0];
 }
 
+// |b|^2, where that is one number: of `normalize(…)` 1, or 0, of which nothing is moved.
+std::optional<double> square_of(Graph &graph, NodeId b, NodeId square) {
+    if (const auto number = graph.as_number(square)) return number;
+    if (graph[b].op == Op::Normalize) return 1;
+    return number_of(graph, square);
+}
+
 // The factors of a product of vectors, those of a Splat as scalars.
 void take_factors(const Graph &graph, NodeId id, std::vector<NodeId> &factors) {
     const ir::Node node = graph[id];
@@ -92,7 +99,7 @@ std::optional<Moved> moved_by(Graph &graph, NodeId v, NodeId along, double sign)
         if (std::fabs(s->by) == 1 && (same(graph, graph.mul(s->share, square), signed_inner) ||
                                       same(graph, s->share, graph.div(signed_inner, square))))
             return Moved{v, b, 1};
-        const auto size = graph.as_number(square);
+        const auto size = square_of(graph, b, square);
         if (!size || !(*size > 0)) continue;
         for (const double e : {1.0, 0.5, 2.0, 1 / *size, 2 / *size})
             if (same(graph, s->share, graph.mul(graph.number(e), inner)))

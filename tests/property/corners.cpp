@@ -126,6 +126,7 @@ class Swapped : public Chance {
     std::string scene() {
         std::string out = "param k = 0.3 in -1..2\nimplicit(point => {\n  var p = point\n";
         const bool loop = often();
+        index_ = loop ? "i" : "1";
         out += loop ? "  for i in 0.." + number(double(2 + pick(4))) + " {\n" : "";
         for (std::size_t i = 2 + pick(4); i > 0; --i) out += "    " + fold() + "\n";
         out += loop ? "  }\n" : "";
@@ -136,6 +137,19 @@ class Swapped : public Chance {
     }
 
   private:
+    std::string index_;
+
+    // Over a plane whose normal depends on the loop's index, of length 1 or nearly.
+    std::string reflection() {
+        const std::string turn = between(0, 3) + " + " + between(-1, 1) + " * " + index_;
+        const std::string n =
+            of({"normalize(vec3(1, @, 0.3))", "vec3(cos(@), sin(@), 0)", "normalize(vec3(@, 0, 1))",
+                "vec3(sin(@), 0, cos(@)) * 1.2", "vec3(1, @, 0)", "normalize(vec3(k, @, 1))"});
+        std::string normal;
+        for (const char c : n) normal += c == '@' ? "(" + turn + ")" : std::string(1, c);
+        return "let n = " + normal + "\n    p -= " + of({"2", "2", "2", "1", "2.3"}) +
+               " * min(0, dot(p, n) - " + of({"0", "0", "0.2"}) + ") * n";
+    }
     // Of two numbers that may be equal on a set with an inside, too.
     std::string compared(const std::string &a, const std::string &b) {
         const std::string less = of({" < ", " <= ", " > ", " >= "});
@@ -148,7 +162,9 @@ class Swapped : public Chance {
     std::string fold() {
         const std::string two = of({"xy", "xz", "yz"}), a = "p." + two.substr(0, 1),
                           b = "p." + two.substr(1), back = two.substr(1) + two.substr(0, 1);
-        switch (pick(9)) {
+        switch (pick(11)) {
+        case 8:
+        case 9: return "{\n    " + reflection() + "\n    }";
         case 0: return "p = abs(p) - " + between(0, 0.4);
         case 1:
             return "p." + two + " = if " + compared(a, b) + " { p." + back + " } else { p." + two +
