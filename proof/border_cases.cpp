@@ -223,6 +223,9 @@ bool Cases::impossible(const Case &c, const Inequality &more) {
     };
     if (contradicted()) return true;
     if (more.slack > 0) return false; // of products of rows the numbers may be large beside it
+    const std::size_t known = all.size();
+    add_least_roots(all, c);
+    if (all.size() > known && contradicted()) return true;
     const std::size_t rows = all.size();
     add_products(all);
     if (all.size() > rows && contradicted()) return true;

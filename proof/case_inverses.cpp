@@ -207,6 +207,32 @@ void Cases::add_pairs(std::vector<Inequality> &rows) {
     add_ranges(rows);
 }
 
+void Cases::add_least_roots(std::vector<Inequality> &rows, const Case &c) {
+    constexpr double lost = 1e-9;
+    constexpr std::size_t most_parts = 3;
+    std::set<std::uint32_t> roots;
+    for (const Inequality &row : rows)
+        for (const auto &[m, k] : row.sum)
+            if (m.size() == 1 && atoms_[m[0]].square) roots.insert(m[0]);
+    for (const std::uint32_t r : roots) {
+        const Sum square = reduced(*atoms_[r].square, c);
+        double least = 0;
+        looked_.take(16 * (square.size() + 1));
+        std::vector<double> divisors;
+        const auto parts =
+            square.empty() ? std::nullopt : squares_in(square, 0, &least, &divisors);
+        if (!parts || parts->size() > most_parts) continue;
+        if (least > lost)
+            rows.push_back({add(atom(r), constant(std::sqrt(least) * (1 - lost)), -1), false});
+        if (parts->size() < 2 && !(least > lost)) continue; // it is its part's size
+        for (std::size_t i = 0; i < parts->size(); ++i)
+            for (const double sign : {-1.0, 1.0}) {
+                const double by = sign / std::sqrt(divisors[i]);
+                rows.push_back({add(atom(r), (*parts)[i], by), false});
+            }
+    }
+}
+
 bool Cases::solve_by_inverse(const Sum &gap) {
     struct Linear {
         std::uint32_t u;

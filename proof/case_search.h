@@ -141,6 +141,8 @@ class Cases {
     void add_products(std::vector<Inequality> &rows) const;
     // The products of two rows of degree 1; of a root that is at least b >= 0, the squares.
     void add_pairs(std::vector<Inequality> &rows);
+    // Roots are at least as large as the number that their squares are a sum of squares beside.
+    void add_least_roots(std::vector<Inequality> &rows, const Case &c);
     bool never_negative(const Product &m) const;
 
     // The angles at which a fold keeps a product of a turn and a point; its borders as rows.

@@ -156,7 +156,8 @@ std::optional<Sum> root_of_square(const Sum &a) {
     return {};
 }
 
-std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding, double *least) {
+std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding, double *least,
+                                           std::vector<double> *divisors) {
     std::vector<Sum> roots;
     Sum rest = a, sizes; // sizes: of all that was added up to each coefficient
     for (const auto &[m, c] : a) sizes[m] = std::fabs(c);
@@ -172,9 +173,18 @@ std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding, double
             if (least) *least = number;
             return number >= 0 ? std::optional(roots) : std::nullopt;
         }
-        if (lead.size() > 2) return {};
-        // Some atom of the leading term has to stand as a square.
-        const std::uint32_t x = lead[0];
+        // Some atom of the leading term has to stand as a square; where that is a product of many,
+        // any atom.
+        const auto is_square = [](const auto &term) {
+            return term.first.size() == 2 && term.first[0] == term.first[1];
+        };
+        const auto other_lead = std::ranges::find_if(rest, is_square);
+        if (lead.size() > 2 && other_lead == rest.end()) return {};
+        const std::uint32_t x = lead.size() > 2 ? other_lead->first[0] : lead[0];
+        const bool once = std::ranges::all_of(rest, [&](const auto &term) {
+            return is_square(term) || std::ranges::count(term.first, x) <= 1;
+        });
+        if (!once) return {};
         const auto square = rest.find({x, x});
         if (square == rest.end() || square->second <= 0) return {};
         const double by = square->second;
@@ -195,6 +205,7 @@ std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding, double
             return std::find(term.first.begin(), term.first.end(), x) != term.first.end();
         });
         roots.push_back(std::move(root));
+        if (divisors) divisors->push_back(by);
     }
 }
 

@@ -34,8 +34,9 @@ std::optional<Sum> root_of_square(const Sum &a);
 // with a number above 0 besides, so that it is never below 0 (Cholesky's way). What is at most
 // `rounding` of all that was added up to it is nothing: where a sum is 0 its squares are, but a root turns
 // an error e into sqrt(e).
-// That number goes to `least`.
-std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding, double *least = nullptr);
+// That number goes to `least`; what the square of each root is divided by, to `divisors`.
+std::optional<std::vector<Sum>> squares_in(const Sum &a, double rounding, double *least = nullptr,
+                                           std::vector<double> *divisors = nullptr);
 bool is_sum_of_squares(const Sum &a);
 
 // An atom that stands in one term alone and may be solved for, and what it is where sum = 0.

@@ -1,6 +1,8 @@
 #include "proof/half_waves.h"
 
 #include "ir/passes/walk.h"
+#include "proof/continuity.h"
+#include "proof/exact.h"
 #include "proof/lattices.h"
 
 #include <algorithm>
@@ -117,6 +119,139 @@ bool is_even_in(const Graph &graph, NodeId root, NodeId of) {
     return true;
 }
 
+// x less `place`, where that is numbers.
+std::optional<NodeId> numbers_beside(Graph &graph, NodeId x, NodeId place) {
+    const int size = ir::components(graph.type(x));
+    std::vector<NodeId> parts;
+    for (int i = 0; i < size; ++i) {
+        const auto rest =
+            difference(graph, component_of(graph, x, i), component_of(graph, place, i));
+        if (!rest || !graph.is_constant(*rest)) return {};
+        parts.push_back(*rest);
+    }
+    return size == 1 ? parts[0] : graph.make(Op::Make, graph.type(x), parts);
+}
+
+// x less the way from the nearest point of a lattice, or one of two such ways, as the point: it is
+// read by what is told of a cell, and there the way's sign is not seen.
+std::optional<NodeId> as_point(Graph &graph, NodeId x, NodeId way) {
+    const ir::Node node = graph[way];
+    if (node.op == Op::Select) {
+        const auto a = as_point(graph, x, graph.arg(way, 1)),
+                   b = as_point(graph, x, graph.arg(way, 2));
+        if (!a || !b) return {};
+        return graph.make(Op::Select, {graph.arg(way, 0), *a, *b});
+    }
+    const auto found = lattice(graph, way);
+    if (!found || found->beyond != Numbers{}) return {};
+    const NodeId place = place_of(graph, *found), m = period_of(graph, *found);
+    const auto beside = numbers_beside(graph, x, place);
+    if (!beside) return {};
+    return graph.add({*beside, graph.mul(m, graph.make(Op::Round, {graph.div(place, m)}))});
+}
+
+// Is one of the nodes read by what tells numbers apart, which rounding alone may then turn?
+bool tells_one_apart(const Graph &graph, NodeId root, const ir::Substitution &nodes) {
+    std::vector<std::pair<NodeId, bool>> todo{{root, false}}; // and whether it is told apart
+    std::unordered_set<NodeId> seen, told;
+    while (!todo.empty()) {
+        const auto [id, apart] = todo.back();
+        todo.pop_back();
+        if (!(apart ? told : seen).insert(id).second) continue;
+        if (apart && nodes.contains(id)) return true;
+        for (const NodeId arg : graph.args(id))
+            todo.emplace_back(arg, apart || tells_apart[graph[id].op]);
+    }
+    return false;
+}
+
+// All `x - way` as what they are, where that is seen. They are no lattice's points for single
+// precision, but for these and rounding: no hash of them is one number for all of a cell.
+NodeId with_points(Graph &graph, NodeId root, const std::vector<NodeId> &nodes) {
+    ir::Substitution map;
+    for (const NodeId id : nodes) {
+        if (graph[id].op != Op::Sub) continue;
+        if (const auto point = as_point(graph, graph.arg(id, 0), graph.arg(id, 1)))
+            map[id] = *point;
+    }
+    if (map.empty() || tells_one_apart(graph, root, map)) return root;
+    return ir::substitute(graph, root, map);
+}
+
+// x less one of two points of lattices, as one of two ways from them.
+std::optional<NodeId> as_ways(Graph &graph, NodeId x, NodeId point) {
+    const bool is_part = graph[point].op == Op::Swizzle && graph.type(point) == ir::Type::Float;
+    const NodeId choice = is_part ? graph.arg(point, 0) : point;
+    if (graph[choice].op != Op::Select) return {};
+    std::vector<NodeId> arms{graph.arg(choice, 0)};
+    for (const int arm : {1, 2}) {
+        NodeId own = graph.arg(choice, arm);
+        if (is_part) own = component_of(graph, own, ir::swizzle_component(graph[point].payload, 0));
+        arms.push_back(graph.sub(x, own));
+        if (!lattice(graph, arms.back())) return {};
+    }
+    return graph.make(Op::Select, graph.type(x), arms);
+}
+
+// All of these among the nodes as such ways.
+NodeId with_ways(Graph &graph, NodeId root, const std::vector<NodeId> &nodes) {
+    ir::Substitution map;
+    for (const NodeId id : nodes)
+        if (graph[id].op == Op::Sub)
+            if (const auto ways = as_ways(graph, graph.arg(id, 0), graph.arg(id, 1)))
+                map[id] = *ways;
+    return map.empty() ? root : ir::substitute(graph, root, map);
+}
+
+// The only choice that an expression reads, but for those in what tells numbers apart.
+std::optional<NodeId> only_choice(const Graph &graph, NodeId root) {
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    std::optional<NodeId> out;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        const Op op = graph[id].op;
+        if (op == Op::Select && out) return {};
+        if (op == Op::Select)
+            out = id;
+        else if (tells_apart[op])
+            return {};
+        else
+            todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+    }
+    return out;
+}
+
+// A hash of one of two cells as one of two hashes, so that on either side of the choice it is of one
+// cell alone; likewise a fraction, of which hashes are made.
+NodeId with_chosen_hashes(Graph &graph, NodeId root) {
+    constexpr ir::OpSet hashes{Op::Hash, Op::Fract};
+    std::vector<NodeId> todo{root};
+    std::unordered_set<NodeId> seen;
+    ir::Substitution map;
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (!seen.insert(id).second) continue;
+        todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
+        const ir::Node node = graph[id];
+        if (!hashes[node.op]) continue;
+        const NodeId of = graph.arg(id, 0);
+        const auto choice = only_choice(graph, of);
+        if (!choice) continue;
+        std::vector<NodeId> arms{graph.arg(*choice, 0)};
+        for (const int arm : {1, 2})
+            arms.push_back(graph.make(
+                node.op, node.type,
+                std::vector{ir::substitute(graph, of, {{*choice, graph.arg(*choice, arm)}})},
+                node.payload));
+        map[id] = graph.make(Op::Select, node.type, arms);
+    }
+    return map.empty() ? root : ir::substitute(graph, root, map);
+}
+
 } // namespace
 
 NodeId with_half_waves(Graph &graph, NodeId root) {
@@ -141,6 +276,8 @@ NodeId with_half_waves(Graph &graph, NodeId root) {
     for (NodeId choice : choices)
         if (const auto midway = with_borders_midway(graph, choice))
             return with_half_waves(graph, ir::substitute(graph, root, {{choice, *midway}}));
+    if (const NodeId ways = with_ways(graph, root, found); ways != root)
+        return with_half_waves(graph, ways);
     std::vector<Lattice> lattices;
     for (NodeId id : found)
         if (auto own = lattice(graph, id); own && lattices.size() < max_lattices)
@@ -149,15 +286,20 @@ NodeId with_half_waves(Graph &graph, NodeId root) {
         for (const Lattice &b : lattices) {
             const ir::Type type = graph.type(a.node);
             if (a.node.index >= b.node.index || type != graph.type(b.node) ||
-                !is_half_beside(a, b, ir::components(type)) || !is_even_in(graph, root, a.node) ||
-                !is_even_in(graph, root, b.node))
+                !is_half_beside(a, b, ir::components(type)))
                 continue;
+            NodeId whole = with_chosen_hashes(graph, root);
+            const auto is_even = [&] {
+                return is_even_in(graph, whole, a.node) && is_even_in(graph, whole, b.node);
+            };
+            if (!is_even()) whole = with_points(graph, whole, found);
+            if (!is_even()) continue;
             const NodeId x = place_of(graph, a), m = period_of(graph, a);
             const NodeId turns = graph.make(Op::Round, {graph.div(x, m)});
             const NodeId size = graph.make(Op::Abs, {graph.sub(x, graph.mul(m, turns))});
             const NodeId other = graph.sub(graph.mul(m, graph.number(0.5)), size);
             return with_half_waves(graph,
-                                   ir::substitute(graph, root, {{a.node, size}, {b.node, other}}));
+                                   ir::substitute(graph, whole, {{a.node, size}, {b.node, other}}));
         }
     return root;
 }

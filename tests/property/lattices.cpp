@@ -47,6 +47,7 @@ class Hexagons : public NearlyRight {
                           more = pick(12) == 0 ? "1.1 * " : "";
         out += "  let g = if " + with(by, "a") + of({" < ", " < ", " <= "}) + more + with(by, "b") +
                " { a } else { b }\n";
+        if (pick(3) == 0) return out + "  " + cells(at, x) + "\n}, within: ball(2))\n";
         return out + "  " + solid() + "\n}, within: ball(2))\n";
     }
 
@@ -81,6 +82,28 @@ class Hexagons : public NearlyRight {
                      v = pick(3) == 0 ? y * (0.1 + 0.8 * random()) : y * 0.57735;
         return at + " - s * (floor((" + at + " - vec2(" + text(float(u)) + ", " + text(float(v)) +
                ")) / s) + " + of({"1", "1", "1", "2", "0.9"}) + ")";
+    }
+    // Solids that differ from cell to cell, ended about where the next cell begins.
+    std::string cells(const std::string &at, double period) {
+        const double r = 0.2 + 0.25 * random(), way = period / 2 - r;
+        const std::string size = text(float(r)), end = text(float(way * (0.4 + 0.7 * random()))),
+                          id = "let id = " + at + " - g\n  ",
+                          height = of({"0.3 * sin(2 * id.x + id.y)", "0.3 * hash(id)",
+                                       "0.2 * fract(sin(dot(id, vec2(12.9, 78.2))) * 437.5)",
+                                       "0.2 * sin(time + id.y)"});
+        const std::string column = "abs(p.y) - 0.1 - " + height;
+        switch (pick(4)) {
+        case 0: return id + "min(max(length(g) - " + size + ", " + column + "), " + end + ")";
+        case 1:
+            return id + "let w = vec2(max(dot(abs(g), s / length(s)), abs(g.x)) - " + size + ", " +
+                   column + ")\n  min(min(max(w.x, w.y), 0) + length(max(w, 0)), " + end + ")";
+        case 2:
+            return id + "min(length(vec3(g.x, p.y - " + height + ", g.y)) - " + size + ", " + end +
+                   ")";
+        default:
+            return id + "min(max(max(dot(abs(g), s * 0.5), abs(g).x) - " + size + ", " + column +
+                   "), " + end + ")";
+        }
     }
     std::string solid() {
         const std::string r = between(0.2, 0.45);
