@@ -138,6 +138,7 @@ class Swapped : public Chance {
 
   private:
     std::string index_;
+    int normals_ = 0;
 
     // Over a plane whose normal depends on the loop's index, of length 1 or nearly.
     std::string reflection() {
@@ -147,8 +148,9 @@ class Swapped : public Chance {
                 "vec3(sin(@), 0, cos(@)) * 1.2", "vec3(1, @, 0)", "normalize(vec3(k, @, 1))"});
         std::string normal;
         for (const char c : n) normal += c == '@' ? "(" + turn + ")" : std::string(1, c);
-        return "let n = " + normal + "\n    p -= " + of({"2", "2", "2", "1", "2.3"}) +
-               " * min(0, dot(p, n) - " + of({"0", "0", "0.2"}) + ") * n";
+        const std::string own = "n" + number(double(++normals_));
+        return "let " + own + " = " + normal + "\n    p -= " + of({"2", "2", "2", "1", "2.3"}) +
+               " * min(0, dot(p, " + own + ") - " + of({"0", "0", "0.2"}) + ") * " + own;
     }
     // Of two numbers that may be equal on a set with an inside, too.
     std::string compared(const std::string &a, const std::string &b) {
@@ -164,7 +166,7 @@ class Swapped : public Chance {
                           b = "p." + two.substr(1), back = two.substr(1) + two.substr(0, 1);
         switch (pick(11)) {
         case 8:
-        case 9: return "{\n    " + reflection() + "\n    }";
+        case 9: return reflection();
         case 0: return "p = abs(p) - " + between(0, 0.4);
         case 1:
             return "p." + two + " = if " + compared(a, b) + " { p." + back + " } else { p." + two +
