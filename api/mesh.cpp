@@ -2,6 +2,7 @@
 #include "api/mesh_advice.h"
 
 #include "mesh/appearance.h"
+#include "mesh/measure.h"
 #include "mesh/mend.h"
 #include "mesh/simplify.h"
 #include "mesh/write.h"
@@ -26,10 +27,25 @@ Mesh without_mesh(MeshStatus status, std::string message) {
     return mesh;
 }
 
+double length_of(const ir::Box &box) {
+    double longest = 0;
+    for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, box.hi[i] - box.lo[i]);
+    return longest;
+}
+
+// Whether there is no mesh because a cell is as large as the solid.
+bool is_coarse(const fathom::mesh::Made &made, const fathom::mesh::Settings &settings) {
+    using fathom::mesh::Failure;
+    const bool unseen = made.failure == Failure::Unseen || made.failure == Failure::Empty ||
+                        made.failure == Failure::Flat;
+    const double longest = length_of(made.box);
+    return unseen && longest > 0 && settings.side >= longest;
+}
+
 Mesh refused(const fathom::mesh::Made &made, const ir::Scene &scene,
              const fathom::mesh::Settings &settings) {
-    Refusal why = refusal_of(made.failure, made.place);
-    if (made.failure == fathom::mesh::Failure::Unseen)
+    Refusal why = refusal_of(made, settings);
+    if (made.failure == fathom::mesh::Failure::Unseen && !is_coarse(made, settings))
         why.message = "the solid is thinner than the finest cells, if there is one; " +
                       advice_of(scene, settings, made, made.octree.undecided);
     return without_mesh(why.status, std::move(why.message));
@@ -205,6 +221,27 @@ Refusal refusal_of(fathom::mesh::Failure failure, const fathom::mesh::Point &pla
     return {};
 }
 
+Refusal refusal_of(const fathom::mesh::Made &made, const fathom::mesh::Settings &settings) {
+    constexpr double spare = 1.1; // what an estimate may be off
+    const double longest = length_of(made.box);
+    if (is_coarse(made, settings))
+        return {MeshStatus::TooCoarse,
+                fmt::format("cells with sides of {:.3g} are larger than the solid, which is {:.3g} "
+                            "long: take a tolerance of {:.2g}, for instance",
+                            settings.side, longest, longest / 100)};
+    if (made.failure == fathom::mesh::Failure::TooMany && made.octree.wanted > 0) {
+        const fathom::mesh::Lattice &lattice = made.octree.lattice;
+        const double coarser =
+            spare * std::sqrt(std::max(made.octree.wanted / double(fathom::mesh::most_nodes), 1.0));
+        const double side = coarser * lattice.side(lattice.level);
+        return {MeshStatus::TooFine,
+                fmt::format("that is too fine, and takes too many cells: a tolerance of {:.2g} may "
+                            "do, or a resolution of {:.0f}",
+                            side, std::floor(longest / side))};
+    }
+    return refusal_of(made.failure, made.place);
+}
+
 Refusal refusal_of(const Scene &scene, const MeshOptions &options) {
     if (!good(options))
         return {MeshStatus::BadOptions,
@@ -295,6 +332,17 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
             return mesh;
         },
         [](const Diagnostic &why) { return without_mesh(MeshStatus::TooLarge, why.message); });
+}
+
+MeshNumbers numbers_of(const Mesh &mesh) noexcept {
+    return guarded(
+        [&] {
+            const fathom::mesh::Mesh inner{mesh.vertices, {}, mesh.triangles};
+            const fathom::mesh::Form form = form_of(inner);
+            const fathom::mesh::MeshSums sums = sums_of(inner);
+            return MeshNumbers{form.components, form.genus, sums.volume, sums.area};
+        },
+        [](const Diagnostic &) { return MeshNumbers(); });
 }
 
 std::optional<MeshFormat> mesh_format(std::string_view file_name) noexcept {

@@ -17,6 +17,8 @@ struct Refusal {
 Refusal refusal_of(const Scene &scene, const MeshOptions &options);
 // Of what the mesher says; `place` as Made has it.
 Refusal refusal_of(fathom::mesh::Failure failure, const fathom::mesh::Point &place = {});
+// The same of a mesh that was not made, in numbers of the solid where there are some.
+Refusal refusal_of(const fathom::mesh::Made &made, const fathom::mesh::Settings &settings);
 // `share`: of the whole work's progress.
 fathom::mesh::Settings settings_of(const MeshOptions &options, double share = 1);
 fathom::mesh::Unit inner(MeshUnit unit);

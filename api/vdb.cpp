@@ -93,6 +93,15 @@ VdbFile without_file(const Diagnostic &why) { return {"", why.message}; }
 
 } // namespace
 
+std::string vdb_obstacle() noexcept {
+    return guarded(
+        [] {
+            std::string why;
+            return driver::vdb_writer(why) ? std::string() : why + ", or write .nrrd";
+        },
+        [](const Diagnostic &why) { return why.message; });
+}
+
 VdbFile vdb_file(const Volume &volume, const std::string &name) noexcept {
     return guarded(
         [&] {

@@ -382,8 +382,12 @@ struct Reader {
         add_row(sub, simplify_row(mesh.simplify));
         sub->add_flag("--parts", mesh.parts,
                       "each part of the scene as an object of its own: .glb, .obj and .3mf");
+        choice<std::optional<bool>>(sub, "--certify", mesh.certify, {{"on", true}, {"off", false}},
+                                    "prove what can be proved of the mesh, and say it: on, or off "
+                                    "for speed; unless said on with --json")
+            ->type_name("WHETHER");
         sub->add_flag("--json", mesh.solid.json,
-                      "prove what can be proved of the mesh: one JSON document on standard output");
+                      "what is proved of the mesh: one JSON document on standard output");
     }
 
     void add_measure() {

@@ -148,9 +148,10 @@ struct SolidArguments {
 struct MeshCommand {
     SolidArguments solid; // its scene's file is each of these in turn
     std::vector<std::string> files;
-    std::string out;     // `{}` stands for the scene's name
-    double simplify = 0; // a distance; 0: no triangles are left out
-    bool parts = false;  // each an object of its own
+    std::string out;             // `{}` stands for the scene's name
+    double simplify = 0;         // a distance; 0: no triangles are left out
+    bool parts = false;          // each an object of its own
+    std::optional<bool> certify; // unset: where a document is wanted
 };
 // `fathom measure`.
 struct MeasureCommand {

@@ -29,27 +29,35 @@ void say_undecided(const v1::Mesh &mesh, const std::string &what, Terminal &term
                     box.hi[1], box.hi[2], mesh.message));
 }
 
-// The certificate as a document; distances are null where they do not hold everywhere.
+// The certificate as a document; distances are null where they do not hold everywhere. Without a
+// certificate what is only proved with one is left out.
 Json json_of(const v1::Mesh &mesh) {
-    const v1::MeshCertificate &c = *mesh.certificate;
+    const v1::MeshCertificate *c = mesh.certificate ? &*mesh.certificate : nullptr;
+    const v1::MeshNumbers of =
+        c ? v1::MeshNumbers{c->components, c->genus, c->mesh_volume, c->mesh_area}
+          : v1::numbers_of(mesh);
     Json json;
-    json["status"] = c.certified ? "certified" : "partial";
+    json["status"] = !c ? "unproved" : c->certified ? "certified" : "partial";
     json["triangles"] = mesh.triangles.size();
     json["vertices"] = mesh.vertices.size();
     json["watertight"] = true;
     json["self_intersections"] = 0; // both by construction
-    json["mesh_components"] = c.components;
-    json["mesh_genus"] = c.genus;
-    const auto everywhere = [&](double d) { return c.certified ? Json(d) : Json(); };
-    json["mesh_to_surface"] = everywhere(c.mesh_to_surface);
-    json["surface_to_mesh"] = everywhere(c.surface_to_mesh);
-    json["volume"] = {c.least_volume, c.largest_volume};
-    json["mesh_volume"] = c.mesh_volume;
-    json["mesh_area"] = c.mesh_area;
+    json["mesh_components"] = of.components;
+    json["mesh_genus"] = of.genus;
+    if (c) {
+        const auto everywhere = [&](double d) { return c->certified ? Json(d) : Json(); };
+        json["mesh_to_surface"] = everywhere(c->mesh_to_surface);
+        json["surface_to_mesh"] = everywhere(c->surface_to_mesh);
+        json["volume"] = {c->least_volume, c->largest_volume};
+    }
+    json["mesh_volume"] = of.volume;
+    json["mesh_area"] = of.area;
     json["undecided_cells"] = mesh.undecided_cells;
-    json["unproved_places"] = c.unproved_places;
-    json["seam_cells"] = c.seam_cells;
-    json["seam_width"] = c.seam_width;
+    if (c) {
+        json["unproved_places"] = c->unproved_places;
+        json["seam_cells"] = c->seam_cells;
+        json["seam_width"] = c->seam_width;
+    }
     if (mesh.simplification)
         json["simplified"] = {{"triangles_before", mesh.simplification->triangles_before},
                               {"colored_triangles", mesh.simplification->colored_triangles},
@@ -57,8 +65,26 @@ Json json_of(const v1::Mesh &mesh) {
                               {"undone", mesh.simplification->undone}};
     json["undecided"] = Json::array();
     for (const v1::Box &box : mesh.undecided) json["undecided"].push_back({box.lo, box.hi});
-    json["rests_on"] = c.rests_on;
+    if (c) json["rests_on"] = c->rests_on;
     return json;
+}
+
+// The certificate in a line, for who has no document.
+void say_certificate(const v1::Mesh &mesh, const std::string &what, Terminal &terminal) {
+    if (!mesh.certificate) return;
+    const v1::MeshCertificate &c = *mesh.certificate;
+    const std::string volume = fmt::format("the solid's volume lies between {:.6g} and {:.6g}",
+                                           c.least_volume, c.largest_volume);
+    if (c.certified)
+        terminal.say(fmt::format(
+            "{}: certified: all of the mesh lies within {:.3g} of the surface, "
+            "and all of the surface within {:.3g} of the mesh; {}; {}",
+            what, c.mesh_to_surface, c.surface_to_mesh,
+            c.components == 1 ? "one piece" : fmt::format("{} pieces", c.components), volume));
+    else
+        terminal.say(fmt::format("{}: partial: of {} cells and of {} places of the mesh nothing is "
+                                 "proved; {}",
+                                 what, mesh.undecided_cells, c.unproved_places, volume));
 }
 
 // The same of parts, each with its name and line.
@@ -219,7 +245,7 @@ Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &f
     if (format == v1::MeshFormat::Obj && overwrites(frame.files, library_of(frame.out), terminal))
         return usage_error;
     v1::MeshOptions options = options_of(frame.arguments);
-    options.certify = command.solid.json;
+    options.certify = command.certify.value_or(command.solid.json);
     options.colors = format != v1::MeshFormat::Stl;
     options.simplify = command.simplify;
     options.progress = frame.progress;
@@ -239,18 +265,19 @@ Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &f
     }
     const std::string name = command.solid.part.empty() ? name_of(file) : command.solid.part;
     terminal.finish_progress();
+    const auto take = [&](const std::string &what, const std::string &called,
+                          const v1::Mesh &mesh) {
+        if (!command.solid.json) say_certificate(mesh, what, terminal);
+        say_undecided(mesh, what, terminal);
+        say_simplified(mesh, what, command.simplify, terminal);
+        objects.all.push_back({called, &mesh});
+    };
     if (command.parts) {
         say_parts(objects.parts, frame.out, terminal);
-        for (const v1::PartMesh &part : objects.parts.parts) {
-            say_undecided(part.mesh, fmt::format("{}: part `{}`", frame.out, part.name), terminal);
-            say_simplified(part.mesh, fmt::format("{}: part `{}`", frame.out, part.name),
-                           command.simplify, terminal);
-            objects.all.push_back({part.name, &part.mesh});
-        }
+        for (const v1::PartMesh &part : objects.parts.parts)
+            take(fmt::format("{}: part `{}`", frame.out, part.name), part.name, part.mesh);
     } else {
-        say_undecided(objects.whole, frame.out, terminal);
-        say_simplified(objects.whole, frame.out, command.simplify, terminal);
-        objects.all.push_back({name, &objects.whole});
+        take(frame.out, name, objects.whole);
     }
     if (format == v1::MeshFormat::Glb || format == v1::MeshFormat::Obj)
         for (const v1::MeshObject &object : objects.all)

@@ -130,6 +130,11 @@ Exit run(const VolumeCommand &command, Terminal &terminal) {
     if (overwrites(command.solid.scene.file, command.out, terminal) ||
         misnamed(command.out, Content::Volume, terminal))
         return usage_error;
+    if (suffix_of(command.out) == ".vdb") // before any work is done
+        if (const std::string why = v1::vdb_obstacle(); !why.empty()) {
+            terminal.say(fmt::format("fathom: {}: {}", command.out, why));
+            return device_error;
+        }
     return make_frames(command.solid, command.out, terminal,
                        [&](const SolidFrame &frame) { return make(command, frame, terminal); });
 }

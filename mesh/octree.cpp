@@ -343,6 +343,30 @@ void search_hidden(Octree &octree, const Field &field, const OctreeSettings &set
 
 } // namespace
 
+namespace {
+
+// How many nodes there would be so many levels below some cells, by 64 of these.
+double nodes_below(const Octree &octree, const Field &field, const std::vector<Cell> &cells,
+                   int levels, const OctreeSettings &settings, Progress &progress) {
+    constexpr std::size_t most = 64;
+    const std::size_t count = std::min(cells.size(), most);
+    std::vector<std::size_t> sizes(count);
+    in_parallel(
+        count, settings.threads, progress, [&] { return Divider(field); },
+        [&](Divider &divider, std::size_t k) {
+            const std::size_t number = k * cells.size() / count;
+            sizes[k] = subtree(divider, octree.lattice, *octree.tapes[number], cells[number],
+                               cells[number].level + levels, false, settings.trusts_bounds)
+                           .size();
+        });
+    double sum = 0;
+    for (const std::size_t size : sizes) sum += static_cast<double>(size);
+    return sum * static_cast<double>(cells.size()) /
+           static_cast<double>(std::max<std::size_t>(count, 1));
+}
+
+} // namespace
+
 Octree make_octree(const Field &field, const Lattice &lattice, const OctreeSettings &settings,
                    Progress &progress) {
     Octree octree;
@@ -360,8 +384,17 @@ Octree make_octree(const Field &field, const Lattice &lattice, const OctreeSetti
         cells.push_back(branch.cell);
         octree.tapes.push_back(branch.tape);
     }
+    // Far too many are refused before they are made.
+    constexpr double usual = 2, certain = 2; // nodes a cell and a fourfold; of what was estimated
+    const int levels = lattice.level - top;
+    const auto most = static_cast<double>(most_nodes);
+    if (usual * std::ldexp(static_cast<double>(cells.size()), 2 * levels) > most) {
+        octree.wanted = nodes_below(octree, field, cells, levels, settings, progress);
+        octree.full = octree.wanted > certain * most;
+        if (octree.full) return octree;
+    }
     progress.phase(share(0.8));
-    graft_all(octree, field, cells, lattice.level - top, false, settings, progress);
+    graft_all(octree, field, cells, levels, false, settings, progress);
     progress.phase(to);
     if (!progress.cancelled && !octree.full) search_hidden(octree, field, settings, progress);
     return octree;

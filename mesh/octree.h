@@ -50,6 +50,7 @@ struct Octree {
     std::vector<std::int32_t> seams; // nodes
     double seam_width = 0;
     bool full = false; // more than most_nodes were wanted: it is not whole
+    double wanted = 0; // so many, about; 0: they were not estimated, since they are few
     // Tangled cells are divided to this level, and below it only where smaller ones lie beside them;
     // no farther is searched for what no corner shows.
     int settled = 0;

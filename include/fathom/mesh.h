@@ -141,6 +141,14 @@ struct Mesh {
     explicit operator bool() const { return status == MeshStatus::Done; }
 };
 
+/** Of a mesh's triangles; nothing of them is proved of the solid. */
+struct MeshNumbers {
+    std::size_t components = 0;
+    long genus = 0; /**< all components together */
+    double volume = 0, area = 0;
+};
+FATHOM_API MeshNumbers numbers_of(const Mesh &mesh) noexcept;
+
 /** Never throws. Takes some 500 bytes of memory a triangle meanwhile. */
 FATHOM_API Mesh make_mesh(const Scene &scene, const MeshOptions &options = {}) noexcept;
 

@@ -86,6 +86,7 @@ FATHOM_API std::string npy_file(const Volume &volume) noexcept;
 struct VdbFile {
     std::string bytes, message;
 };
+FATHOM_API std::string vdb_obstacle() noexcept; /**< why there can be none here; empty: nothing */
 FATHOM_API VdbFile vdb_file(const Volume &volume, const std::string &name = "density") noexcept;
 
 /** A volume of a field, and what its grid is called. */

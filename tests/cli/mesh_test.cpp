@@ -55,6 +55,48 @@ TEST_CASE("--json prints the certificate, and says partial where something is un
     CHECK(shell(folder, "fathom mesh ball.sdf --json -o -").exit == 2);
 }
 
+TEST_CASE("what is too fine or too coarse says what would do, and soon") {
+    ScratchFolder folder;
+    folder.write("ball.sdf", "sphere(1)\n");
+    const Result fine = shell(folder, "fathom mesh ball.sdf --resolution 8000 -o a.stl");
+    CHECK(fine.exit == 2);
+    CHECK(contains(fine.err, "that is too fine, and takes too many cells: a tolerance of 0.0"));
+    CHECK(contains(fine.err, "may do, or a resolution of "));
+    for (const char *command : {"mesh ball.sdf -o a.stl", "measure ball.sdf"})
+        for (const char *tolerance : {"1e3", "1e6", "1e20"}) {
+            const Result coarse =
+                shell(folder, std::string("fathom ") + command + " --tolerance " + tolerance);
+            INFO(command << " " << tolerance);
+            CHECK(coarse.exit == 2);
+            CHECK(contains(coarse.err, "are larger than the solid, which is 2 long: take a "
+                                       "tolerance of 0.02, for instance"));
+        }
+}
+
+TEST_CASE("--certify says whether anything is proved, with a document and without one") {
+    ScratchFolder folder;
+    folder.write("ball.sdf", "sphere(1)\n");
+    const std::string make = "fathom mesh ball.sdf --resolution 20 -o a.stl ";
+    CHECK(shell(folder, make).err.empty());
+    const Result on = shell(folder, make + "--certify on");
+    CHECK((on.exit == 0 && on.out.empty()));
+    for (const char *part : {"a.stl: certified: all of the mesh lies within 0.",
+                             "; one piece; the solid's volume lies between "})
+        CHECK(contains(on.err, part));
+    const Result off = shell(folder, make + "--json --certify off");
+    CHECK((off.exit == 0 && off.err.empty()));
+    for (const char *part : {"{\"status\":\"unproved\",", "\"mesh_components\":1",
+                             "\"mesh_genus\":0", "\"mesh_area\":12.", "\"undecided_cells\":0"})
+        CHECK(contains(off.out, part));
+    for (const char *part : {"mesh_to_surface", "\"volume\"", "rests_on", "unproved_places"})
+        CHECK_FALSE(contains(off.out, part));
+    CHECK(shell(folder, make + "--json --certify on").out == shell(folder, make + "--json").out);
+    CHECK(contains(shell(folder, make + "--certify perhaps").err, "wants on or off"));
+    folder.write("slit.sdf", "box(1) - box([2, 0.00001, 2])\n");
+    const Result slit = shell(folder, "fathom mesh slit.sdf --resolution 24 --certify on -o a.stl");
+    CHECK(contains(slit.err, "a.stl: partial: of "));
+}
+
 TEST_CASE(
     "walls thinner than cells are said, with what shows them, with a certificate and without") {
     ScratchFolder folder;
