@@ -34,7 +34,7 @@ Measures measured(const Scene &scene, const MeshOptions &options) {
     const fathom::mesh::Settings settings = settings_of(options, share);
     const fathom::mesh::Made made = fathom::mesh::make_mesh(ir_of(scene), settings);
     if (made.failure != fathom::mesh::Failure::None)
-        return without<Measures>(refusal_of(made.failure, made.place));
+        return without<Measures>(refusal_of(made, settings));
     fathom::mesh::Progress progress;
     progress.report = options.progress;
     progress.from = share;
@@ -43,6 +43,8 @@ Measures measured(const Scene &scene, const MeshOptions &options) {
     if (progress.cancelled) return without<Measures>(refusal_of(fathom::mesh::Failure::Cancelled));
     Measures result;
     result.volume = enclosure_of(found.volume);
+    result.area = enclosure_of(found.area);
+    result.open_places = found.open_places;
     for (std::size_t i = 0; i < 3; ++i) {
         result.center[i] = enclosure_of(found.center[i]);
         result.least[i] = enclosure_of(found.least[i]);

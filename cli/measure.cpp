@@ -47,7 +47,7 @@ std::vector<Row> rows_of(const v1::Measures &of, const MeasureCommand &command) 
     const std::string length = unit_of(command, 1);
     const double volume = best(of.mesh_volume, of.volume);
     std::vector<Row> rows{{"volume", unit_of(command, 3), volume, of.volume},
-                          {"area", unit_of(command, 2), of.mesh_area, {}}};
+                          {"area", unit_of(command, 2), best(of.mesh_area, of.area), of.area}};
     if (command.density) {
         const double one = mass_of_one(command);
         rows.push_back({"mass", length.empty() ? "" : "g", one * volume, times(of.volume, one)});
@@ -91,7 +91,9 @@ void put_table(const std::string &title, const std::vector<Row> &rows, double sc
         terminal.put(row.proved ? fmt::format("  {:22}{:>14}{:>16}{:>14}\n", name,
                                               printed(row.value, scale),
                                               printed_end(row.proved->lo, scale, false),
-                                              printed_end(row.proved->hi, scale, true))
+                                              std::isfinite(row.proved->hi)
+                                                  ? printed_end(row.proved->hi, scale, true)
+                                                  : "-")
                                 : fmt::format("  {:22}{:>14}{:>16}{:>14}\n", name,
                                               printed(row.value, scale), "-", "-"));
     }
@@ -110,7 +112,8 @@ Json json_of(double of_mesh, const v1::Enclosure &proved) {
 Json json_of(const v1::Measures &of, const MeasureCommand &command) {
     Json json;
     json["volume"] = json_of(of.mesh_volume, of.volume);
-    json["area"] = {{"value", of.mesh_area}};
+    json["area"] = json_of(of.mesh_area, of.area);
+    if (of.open_places > 0) json["area"]["open_places"] = of.open_places;
     if (command.density) {
         const double one = mass_of_one(command);
         json["mass"] = json_of(one * best(of.mesh_volume, of.volume), times(of.volume, one));
@@ -294,6 +297,9 @@ Exit run(const MeasureCommand &command, Terminal &terminal) {
             terminal.put(title + "\n  holds no point\n");
         else
             put_table(title, rows_of(subject.of, command), size_of(subject.of), terminal);
+        if (subject.of && subject.of.open_places > 0)
+            terminal.put(fmt::format("  (nothing bounds the area in {} of the smallest boxes)\n",
+                                     subject.of.open_places));
     }
     for (const Between &between : clearances) put_clearance(between, command, terminal);
     return done;

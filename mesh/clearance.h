@@ -1,5 +1,5 @@
 // How far two solids are apart: by pairs of boxes that may hold points of them, nearest first
-// (docs/measure.md, 2).
+// (docs/measure.md, 3).
 #pragma once
 
 #include "mesh/measure.h"

@@ -1,16 +1,14 @@
 #include "mesh/measure.h"
 
-#include "mesh/slopes.h"
+#include "mesh/seams.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace fathom::mesh {
 namespace {
-
-using Real3 = std::array<double, 3>;
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double rounding_share = 1e-9; // what rounding may take of a sum, by the size of its terms
@@ -27,6 +25,8 @@ struct CellSums {
     double inside = 0, open = 0;
     Real3 moment{}, least_moment{}, most_moment{}; // of what is inside; of what is open
     double sizes = 0;                              // of all moments' terms
+    double least_area = 0, most_area = 0;
+    std::size_t open_places = 0; // boxes of which no greatest area is known
     Real3 outer_lo{unbounded, unbounded, unbounded}, outer_hi{-unbounded, -unbounded, -unbounded};
     Real3 known_lo = outer_lo, known_hi = outer_hi; // of points that are in the solid
 
@@ -75,6 +75,8 @@ struct CellSums {
     }
     void add(const CellSums &other) {
         inside += other.inside, open += other.open, sizes += other.sizes;
+        least_area += other.least_area, most_area += other.most_area;
+        open_places += other.open_places;
         for (std::size_t i = 0; i < 3; ++i) {
             moment[i] += other.moment[i];
             least_moment[i] += other.least_moment[i];
@@ -85,6 +87,14 @@ struct CellSums {
             known_hi[i] = std::max(known_hi[i], other.known_hi[i]);
         }
     }
+};
+
+// What a walk over open leaves goes by.
+struct Walk {
+    Real3 middle{};
+    double ulp = 0, thin = 0;           // seam_thickness
+    int by_planes = 0, by_dividing = 0; // how often leaves are divided
+    int spare = 0;                      // boxes of a leaf that are divided more often
 };
 
 struct Splitter {
@@ -99,63 +109,18 @@ double diagonal(const Piece &part) {
     return std::sqrt(squares);
 }
 
-// The share of a box, by half its sides, in which value + slope · p <= 0, p from its middle: of the
-// simplices that a plane cuts off at its corners, added and taken away. Between two numbers, for what
-// slopes of next to nothing may take. (Barrow and Smith 1979.)
-std::array<double, 2> share_below(double value, const std::array<double, 3> &slope,
-                                  const Real3 &half) {
-    constexpr double little = 1e-3, rounding = 1e-9; // of the greatest; of a share
-    std::array<double, 3> across{};                  // what the sides add
-    for (std::size_t i = 0; i < 3; ++i) across[i] = 2 * std::fabs(slope[i]) * half[i];
-    const double most = *std::ranges::max_element(across);
-    double slack = 0, whole = 0, product = 1;
-    std::vector<double> sides;
-    for (const double a : across) {
-        if (a < little * most || a == 0) {
-            slack += 0.5 * a;
-        } else {
-            sides.push_back(a);
-            whole += a, product *= a * static_cast<double>(sides.size());
-        }
-    }
-    const auto share = [&](double above) { // of value <= above
-        const double t = above - value + 0.5 * whole;
-        if (t <= 0) return 0.0;
-        if (t >= whole) return 1.0;
-        double sum = 0;
-        for (unsigned set = 0; set < 1u << sides.size(); ++set) {
-            double rest = t;
-            for (std::size_t i = 0; i < sides.size(); ++i)
-                if (set >> i & 1) rest -= sides[i];
-            if (rest > 0)
-                sum += (std::popcount(set) % 2 ? -1 : 1) *
-                       std::pow(rest, static_cast<double>(sides.size()));
-        }
-        return std::clamp(sum / product, 0.0, 1.0);
-    };
-    return {std::max(share(-slack) - rounding, 0.0), std::min(share(slack) + rounding, 1.0)};
-}
-
 // What an open box adds: by a plane, if its field is all but linear in it.
-void add_open(Splitter &splitter, const cpu::ShortTape &tape, const Piece &piece,
-              const Real3 &middle, CellSums &sums) {
-    const auto linear = linear_over(splitter.evaluator, tape, splitter.boxes, piece.lo, piece.hi);
+void add_open(const Piece &piece, const std::optional<Linear> &linear, const Real3 &middle,
+              CellSums &sums) {
     if (!linear) return sums.add(piece.lo, piece.hi, Space::Open, middle);
-    const Point at = middle_point(piece.lo, piece.hi);
-    Real3 half{};
-    for (std::size_t i = 0; i < 3; ++i) half[i] = 0.5 * (double(piece.hi[i]) - piece.lo[i]);
-    double off = linear->off; // the middle is rounded
-    for (std::size_t i = 0; i < 3; ++i)
-        off += std::fabs(linear->slope[i]) *
-               std::fabs(at[i] - 0.5 * (double(piece.lo[i]) + piece.hi[i]));
-    sums.add_part(piece.lo, piece.hi, share_below(linear->value + off, linear->slope, half)[0],
-                  share_below(linear->value - off, linear->slope, half)[1], middle);
+    const Enclosure share = share_of(piece.lo, piece.hi, *linear);
+    sums.add_part(piece.lo, piece.hi, share.lo, share.hi, middle);
 }
 
-// The eight parts of each of some open boxes: those that stay open.
+// The eight parts of each of some open boxes: those that stay open. `graph`: that they are in.
 std::vector<Piece> divided(Splitter &splitter, const cpu::ShortTape &tape,
-                           const std::vector<Piece> &whole, double ulp, const Real3 &middle,
-                           CellSums &sums) {
+                           const std::vector<Piece> &whole, const Walk &walk, CellSums &sums,
+                           Graph *graph = nullptr) {
     constexpr std::size_t at_once = cpu::max_boxes / 16;
     std::vector<Piece> open, parts(8 * at_once);
     cpu::Boxes &boxes = splitter.boxes;
@@ -180,7 +145,7 @@ std::vector<Piece> divided(Splitter &splitter, const cpu::ShortTape &tape,
                 const Piece &part = parts[8 * j + k];
                 const std::size_t box = 16 * j + k;
                 const Space space =
-                    space_of(splitter.evaluator, box, 0.5 * diagonal(part), ulp, true);
+                    space_of(splitter.evaluator, box, 0.5 * diagonal(part), walk.ulp, true);
                 if (splitter.evaluator.ranges.result_hi[box + 8] < 0) {
                     Point at;
                     for (std::size_t i = 0; i < 3; ++i) at[i] = boxes.lo[i][box + 8];
@@ -189,7 +154,8 @@ std::vector<Piece> divided(Splitter &splitter, const cpu::ShortTape &tape,
                 if (space == Space::Open)
                     open.push_back(part);
                 else
-                    sums.add(part.lo, part.hi, space, middle);
+                    sums.add(part.lo, part.hi, space, walk.middle);
+                if (space == Space::Inside && graph) graph->add_inside(part.lo, part.hi);
             }
     }
     return open;
@@ -233,6 +199,76 @@ int levels_for(const Field &field, const Octree &octree, const std::vector<Cell>
     return levels;
 }
 
+// Boxes that lie across an edge of the surface, or about a place where none of its directions is
+// known, are divided so often more.
+constexpr int for_edges = 2, for_places = 5;
+
+void add_area(const Enclosure &area, CellSums &sums) {
+    sums.least_area += area.lo, sums.most_area += area.hi;
+}
+
+// What an open box adds that is divided so often. `linear`: of the box.
+void walk_graph(Splitter &splitter, const cpu::ShortTape &tape, const Piece &piece,
+                const std::optional<Linear> &linear, const Slant &slant, int levels,
+                const Walk &walk, CellSums &sums) {
+    Graph graph{piece.lo, piece.hi, {}};
+    std::vector<Piece> open{piece};
+    for (int level = 0; level < levels && !open.empty(); ++level)
+        open = divided(splitter, tape, open, walk, sums, &graph);
+    for (const Piece &part : open) {
+        const std::optional<Linear> of =
+            levels == 0 ? linear
+                        : linear_over(splitter.evaluator, tape, splitter.boxes, part.lo, part.hi);
+        add_open(part, of, walk.middle, sums);
+        graph.add_open(part.lo, part.hi, of);
+    }
+    add_area(graph.area(slant), sums);
+}
+
+// The same of a box that is not known to hold a graph. `more`: so often it may be divided beyond
+// `levels`, for the area's sake, while there are boxes to spare.
+void walk_piece(Splitter &splitter, const cpu::ShortTape &tape, const Piece &piece, int levels,
+                int more, int &spare, const Walk &walk, CellSums &sums) {
+    constexpr int of_seam = 8; // a search takes so many times what a box does, about
+    constexpr double well = 1.02, across_edge = 1.05;
+    const std::optional<Linear> linear =
+        linear_over(splitter.evaluator, tape, splitter.boxes, piece.lo, piece.hi);
+    const std::optional<Slant> slant =
+        linear ? slant_in(splitter.evaluator, tape, splitter.boxes, piece.lo, piece.hi, *linear)
+               : std::nullopt;
+    const bool last =
+        levels <= 0 && (!linear || spare <= 0 || more <= (slant ? for_places - for_edges : 0));
+    if (slant && (slant->most < well || last || (levels <= 0 && slant->most < across_edge)))
+        return walk_graph(splitter, tape, piece, linear, *slant, std::max(levels, 0), walk, sums);
+    const bool asked = linear && !slant && spare > 0;
+    if (asked) spare -= of_seam;
+    const bool touches =
+        asked && seam_in(splitter.evaluator, tape, splitter.boxes, piece.lo, piece.hi, walk.thin);
+    if (touches || last) {
+        add_open(piece, linear, walk.middle, sums);
+        sums.open_places += !touches;
+        return;
+    }
+    if (levels <= 0) --spare;
+    for (const Piece &part : divided(splitter, tape, {piece}, walk, sums))
+        walk_piece(splitter, tape, part, levels - 1, levels <= 0 ? more - 1 : more, spare, walk,
+                   sums);
+}
+
+// What an open leaf adds.
+void walk_leaf(Splitter &splitter, const Octree &octree, const Cell &leaf, const Walk &walk,
+               CellSums &sums) {
+    std::vector<Piece> open{piece_of(octree.lattice, leaf)};
+    const TapePtr tape = tape_of(splitter, octree, leaf, open[0]);
+    int spare = walk.spare;
+    if (linear_over(splitter.evaluator, *tape, splitter.boxes, open[0].lo, open[0].hi))
+        return walk_piece(splitter, *tape, open[0], walk.by_planes, for_places, spare, walk, sums);
+    for (int level = 0; level < walk.by_dividing && !open.empty(); ++level)
+        open = divided(splitter, *tape, open, walk, sums);
+    for (const Piece &piece : open) add_open(piece, {}, walk.middle, sums);
+    sums.open_places += open.size();
+}
+
 // What the octree left out as inside, and the corners that are in the solid.
 CellSums sums_of_octree(const Octree &octree, const Real3 &middle) {
     CellSums sums;
@@ -274,30 +310,22 @@ Measures measure(const ir::Scene &scene, const Settings &settings, const Made &m
     CellSums sums = sums_of_octree(octree, middle);
     const std::vector<Cell> leaves = open_leaves(octree);
     constexpr double of_planes = 16; // a plane takes so many times what dividing does, about
-    const int by_planes = levels_for(field, octree, leaves, work / of_planes),
-              by_dividing = levels_for(field, octree, leaves, work);
+    constexpr std::size_t spare = 400'000, least_spare = 32, most_spare = 512; // of all; of a leaf
+    const Walk walk{middle,
+                    octree.lattice.ulp,
+                    seam_thickness(octree.lattice),
+                    levels_for(field, octree, leaves, work / of_planes),
+                    levels_for(field, octree, leaves, work),
+                    static_cast<int>(std::clamp(spare / std::max<std::size_t>(leaves.size(), 1),
+                                                least_spare, most_spare))};
     constexpr std::size_t piece_of_work = 256; // leaves
     std::vector<CellSums> found((leaves.size() + piece_of_work - 1) / piece_of_work);
     in_parallel(
         found.size(), threads_of(settings), progress, [&] { return Splitter(field); },
         [&](Splitter &splitter, std::size_t number) {
             const std::size_t end = std::min(leaves.size(), (number + 1) * piece_of_work);
-            for (std::size_t k = number * piece_of_work; k < end; ++k) {
-                std::vector<Piece> open{piece_of(octree.lattice, leaves[k])};
-                const TapePtr tape = tape_of(splitter, octree, leaves[k], open[0]);
-                const bool flat =
-                    linear_over(splitter.evaluator, *tape, splitter.boxes, open[0].lo, open[0].hi)
-                        .has_value();
-                const int levels = flat ? by_planes : by_dividing;
-                for (int level = 0; level < levels && !open.empty(); ++level)
-                    open =
-                        divided(splitter, *tape, open, octree.lattice.ulp, middle, found[number]);
-                for (const Piece &piece : open)
-                    if (flat)
-                        add_open(splitter, *tape, piece, middle, found[number]);
-                    else
-                        found[number].add(piece.lo, piece.hi, Space::Open, middle);
-            }
+            for (std::size_t k = number * piece_of_work; k < end; ++k)
+                walk_leaf(splitter, octree, leaves[k], walk, found[number]);
         });
     for (const CellSums &some : found) sums.add(some);
 
@@ -305,6 +333,11 @@ Measures measure(const ir::Scene &scene, const Settings &settings, const Made &m
     measures.used_bound = field.proved;
     measures.volume = {sums.inside * (1 - rounding_share),
                        (sums.inside + sums.open) * (1 + rounding_share)};
+    // No solid of that volume has less surface than a ball.
+    const double ball = std::cbrt(36 * std::numbers::pi) * std::pow(measures.volume.lo, 2.0 / 3);
+    measures.area = {std::max(sums.least_area, ball) * (1 - rounding_share),
+                     sums.open_places > 0 ? unbounded : sums.most_area * (1 + rounding_share)};
+    measures.open_places = sums.open_places;
     for (std::size_t i = 0; i < 3; ++i) {
         const double slack =
             rounding_share * (sums.sizes + std::fabs(middle[i]) * measures.volume.hi);

@@ -1,18 +1,16 @@
 // What can be enclosed of a solid by cells of space that are in it, out of it, or open: its volume,
-// its centre, its box (docs/measure.md, 1).
+// its centre, its box; and of its surface, its area (docs/measure.md, 1 and 2).
 #pragma once
 
+#include "mesh/area.h"
 #include "mesh/mesh.h"
 
 namespace fathom::mesh {
 
-// A number that is proved to lie between two others.
-struct Enclosure {
-    double lo = 0, hi = 0;
-};
-
 struct Measures {
     Enclosure volume;
+    Enclosure area; // without an upper end where there are
+    std::size_t open_places = 0; // … boxes of which none is known
     std::array<Enclosure, 3> center;
     std::array<Enclosure, 3> least, greatest; // the ends of the solid's box
     bool used_bound = false;                  // the proved bound, besides intervals

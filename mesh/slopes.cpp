@@ -1,5 +1,7 @@
 #include "mesh/slopes.h"
 
+#include "mesh/varying.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,229 +12,9 @@ namespace {
 
 using cpu::Kernel;
 
-constexpr double unit_roundoff = 0x1.01p-24; // of sums, products and quotients,
-constexpr double of_roots = 0x1p-22;         // … and of what is not rounded right
-constexpr double inward = 1 - 1e-6;          // what sums of doubles may take
-constexpr std::size_t most_levels = 9;       // that are chosen
+constexpr double inward = 1 - 1e-6;    // what sums of doubles may take
+constexpr std::size_t most_levels = 9; // that are chosen
 constexpr double along_gradient = 0.9; // the cosine from where a number may vary as the field does
-
-struct Interval {
-    double lo = 0, hi = 0;
-};
-Interval operator+(Interval a, Interval b) { return {a.lo + b.lo, a.hi + b.hi}; }
-Interval operator*(Interval a, Interval b) {
-    const double p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
-    return {std::min({p, q, r, s}), std::max({p, q, r, s})};
-}
-Interval hull(Interval a, Interval b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
-double size(Interval a) { return std::max(std::fabs(a.lo), std::fabs(a.hi)); }
-
-// A number over a box: its range, what its slopes along the axes lie within wherever it has any (it
-// is continuous), and how far its floats are from the real number at most.
-struct Varying {
-    bool known = false;
-    Interval range;
-    std::array<Interval, 3> slope{};
-    double error = 0;
-    std::uint32_t id = 0; // the same of copies of one number; 0: it has none yet
-    // It is the part above 0, or below, of the number with that id, whose slopes and error are these:
-    // both parts together are that number.
-    struct Half {
-        std::uint32_t of = 0; // 0: it is none
-        bool above = false;
-        std::array<Interval, 3> slope{};
-        double error = 0;
-    } half{};
-};
-
-// f(a, b, …) of which the partial derivatives lie within `by`; its own rounding is part of the sizes
-// of `terms`, what is added up.
-Varying chained(std::initializer_list<std::pair<const Varying *, Interval>> parts, double terms) {
-    Varying made;
-    made.known = true;
-    made.error = unit_roundoff * terms;
-    for (const auto &[part, by] : parts) {
-        made.known = made.known && part->known;
-        made.error += size(by) * part->error;
-        for (std::size_t i = 0; i < 3; ++i) made.slope[i] = made.slope[i] + by * part->slope[i];
-    }
-    return made;
-}
-
-// a·x + b·y + …
-Varying sum_of_products(const Varying *a, const Varying *b, std::size_t count) {
-    Varying made;
-    made.known = true;
-    for (std::size_t k = 0; k < count; ++k) {
-        const Varying part = chained({{&a[k], b[k].range}, {&b[k], a[k].range}}, 0);
-        made.known = made.known && part.known;
-        // Each is rounded, and then each sum.
-        made.error += part.error + static_cast<double>(count) * unit_roundoff * size(a[k].range) *
-                                       size(b[k].range);
-        for (std::size_t i = 0; i < 3; ++i) made.slope[i] = made.slope[i] + part.slope[i];
-    }
-    return made;
-}
-
-// The length of a vector.
-Varying length_of(const Varying *x, std::size_t count) {
-    double least = 0, most = 0; // squares
-    for (std::size_t k = 0; k < count; ++k) {
-        const Interval r = x[k].range;
-        const double low = r.lo > 0 ? r.lo : r.hi < 0 ? -r.hi : 0;
-        least += low * low;
-        most += size(r) * size(r);
-    }
-    const double shortest = std::sqrt(least), longest = std::sqrt(most);
-    Varying made;
-    made.known = true;
-    made.error = static_cast<double>(count) * of_roots * longest;
-    for (std::size_t k = 0; k < count; ++k) {
-        const Interval r = x[k].range;
-        Interval share{-1, 1}; // of the component in the length
-        if (shortest > 0) {
-            share.lo = std::max(-1.0, r.lo / (r.lo < 0 ? shortest : longest));
-            share.hi = std::min(1.0, r.hi / (r.hi > 0 ? shortest : longest));
-        }
-        made.known = made.known && x[k].known;
-        made.error += x[k].error;
-        for (std::size_t i = 0; i < 3; ++i) made.slope[i] = made.slope[i] + share * x[k].slope[i];
-    }
-    // Of one number alone that is never below 0 it is that number.
-    const auto is_nothing = [](const Varying &one) { return size(one.range) == 0; };
-    for (std::size_t k = 0; k < count; ++k)
-        if (x[k].half.above && std::count_if(x, x + count, is_nothing) == long(count) - 1 &&
-            !is_nothing(x[k])) {
-            made.half = x[k].half;
-            made.half.error += static_cast<double>(count) * of_roots * longest;
-        }
-    return made;
-}
-
-constexpr Interval one{1, 1}, minus_one{-1, -1};
-
-Varying minus(const Varying &a, const Varying &b) {
-    Varying made = chained({{&a, one}, {&b, minus_one}}, size(a.range) + size(b.range));
-    made.range = {a.range.lo - b.range.hi, a.range.hi - b.range.lo};
-    return made;
-}
-
-Varying size_of(const Varying &a) {
-    Varying made = chained({{&a, a.range.lo >= 0   ? one
-                                 : a.range.hi <= 0 ? minus_one
-                                                   : Interval{-1, 1}}},
-                           0);
-    made.range = a.range.lo >= 0   ? a.range
-                 : a.range.hi <= 0 ? Interval{-a.range.hi, -a.range.lo}
-                                   : Interval{0, size(a.range)};
-    return made;
-}
-
-// The greater of both, or the lesser, here this one and there the other, or one of them all over.
-Varying one_of(const Varying &a, const Varying &b, bool greater) {
-    const bool a_alone = greater ? a.range.lo >= b.range.hi : a.range.hi <= b.range.lo;
-    const bool b_alone = greater ? b.range.lo >= a.range.hi : b.range.hi <= a.range.lo;
-    if (a_alone) return a;
-    if (b_alone) return b;
-    Varying made;
-    made.range = greater
-                     ? Interval{std::max(a.range.lo, b.range.lo), std::max(a.range.hi, b.range.hi)}
-                     : Interval{std::min(a.range.lo, b.range.lo), std::min(a.range.hi, b.range.hi)};
-    made.known = a.known && b.known;
-    made.error = std::max(a.error, b.error);
-    for (std::size_t i = 0; i < 3; ++i) made.slope[i] = hull(a.slope[i], b.slope[i]);
-    if (size(b.range) == 0) made.half = {a.id, greater, a.slope, a.error};
-    if (size(a.range) == 0) made.half = {b.id, greater, b.slope, b.error};
-    return made;
-}
-
-// a + b: of both halves of a number that number.
-Varying plus(const Varying &a, const Varying &b) {
-    const double terms = size(a.range) + size(b.range);
-    Varying made = chained({{&a, one}, {&b, one}}, terms);
-    if (a.half.of == 0 || a.half.of != b.half.of || a.half.above == b.half.above) return made;
-    made.slope = a.half.slope;
-    made.error = a.half.error + b.half.error + unit_roundoff * terms;
-    return made;
-}
-
-Varying negative(const Varying &a) {
-    Varying made = chained({{&a, minus_one}}, 0);
-    made.range = {-a.range.hi, -a.range.lo};
-    return made;
-}
-
-// The sine of an angle, or its cosine: both at their derivatives about the middle of its range.
-Varying wave_of(const Varying &angle, bool cosine) {
-    constexpr double near = 5e-7, by_size = 1.2e-7; // what its floats are off (docs/trusted.md, 2)
-    const double middle = 0.5 * (angle.range.lo + angle.range.hi);
-    const double half = 0.5 * (angle.range.hi - angle.range.lo) + 1e-9 * (1 + std::fabs(middle));
-    const double slope = cosine ? -std::sin(middle) : std::cos(middle);
-    Varying made =
-        chained({{&angle, {std::max(slope - half, -1.0), std::min(slope + half, 1.0)}}}, 0);
-    made.error += near + by_size * size(angle.range);
-    return made;
-}
-
-// What kernels give that choose among numbers; others are not known.
-Varying one_of_several(Kernel kernel, const std::vector<Varying> &in) {
-    if (kernel == Kernel::MinF) return one_of(in[0], in[1], false);
-    if (kernel == Kernel::MaxF) return one_of(in[0], in[1], true);
-    if (kernel == Kernel::MaxNeg) return one_of(in[0], negative(in[1]), true);
-    if (kernel == Kernel::MaxAbs) return one_of(size_of(in[0]), size_of(in[1]), true);
-    if (kernel == Kernel::MinMax) return one_of(in[0], one_of(in[1], in[2], true), false);
-    if (kernel == Kernel::MaxMin) return one_of(in[0], one_of(in[1], in[2], false), true);
-    if (kernel == Kernel::Slab) return one_of(minus(in[0], in[1]), minus(in[1], in[2]), true);
-    return {};
-}
-
-// What kernels of one output give; others are not known.
-Varying through(Kernel kernel, const std::vector<Varying> &in) {
-    const auto differences = [&] {
-        return std::array<Varying, 3>{minus(in[0], in[3]), minus(in[1], in[4]),
-                                      minus(in[2], in[5])};
-    };
-    if (kernel == Kernel::CopyF) return in[0];
-    if (kernel == Kernel::NegF) return negative(in[0]);
-    if (kernel == Kernel::AddF) return plus(in[0], in[1]);
-    if (kernel == Kernel::SubF) return minus(in[0], in[1]);
-    if (kernel == Kernel::MulF) return sum_of_products(in.data(), in.data() + 1, 1);
-    if (kernel == Kernel::DivF) {
-        const Interval by = in[1].range;
-        if (by.lo != by.hi || by.lo == 0 || !in[1].known) return {};
-        return chained({{&in[0], {1 / by.lo, 1 / by.lo}}}, size(in[0].range) / std::fabs(by.lo));
-    }
-    if (kernel == Kernel::MulAdd) {
-        const Varying product = sum_of_products(in.data(), in.data() + 1, 1);
-        return chained({{&product, one}, {&in[2], one}},
-                       size(in[0].range) * size(in[1].range) + size(in[2].range));
-    }
-    if (kernel == Kernel::Dot2) return sum_of_products(in.data(), in.data() + 2, 2);
-    if (kernel == Kernel::Dot3) return sum_of_products(in.data(), in.data() + 3, 3);
-    if (kernel == Kernel::Dot4) return sum_of_products(in.data(), in.data() + 4, 4);
-    if (kernel == Kernel::SinF) return wave_of(in[0], false);
-    if (kernel == Kernel::CosF) return wave_of(in[0], true);
-    if (kernel == Kernel::AbsF) return size_of(in[0]);
-    if (kernel == Kernel::AbsSub) {
-        const Varying whole = size_of(in[0]);
-        return chained({{&whole, one}, {&in[1], minus_one}}, size(in[0].range) + size(in[1].range));
-    }
-    if (kernel == Kernel::SubAbs) return size_of(minus(in[0], in[1]));
-    if (kernel == Kernel::Length2) return length_of(in.data(), 2);
-    if (kernel == Kernel::Length3) return length_of(in.data(), 3);
-    if (kernel == Kernel::Distance3) return length_of(differences().data(), 3);
-    if (kernel == Kernel::Ball) {
-        const Varying length = length_of(differences().data(), 3);
-        return chained({{&length, one}, {&in[6], minus_one}}, size(in[6].range));
-    }
-    if (kernel == Kernel::LengthPositive3) {
-        Varying nothing, parts[3];
-        nothing.known = true;
-        for (std::size_t i = 0; i < 3; ++i) parts[i] = one_of(in[i], nothing, true);
-        return length_of(parts, 3);
-    }
-    return one_of_several(kernel, in);
-}
 
 // Slopes by slot: the registers of a tape, and what all points share.
 struct Slopes {
@@ -258,8 +40,8 @@ struct Slopes {
 // The axis along which a number changes fastest for sure.
 double least_slope(const Varying &number) {
     double best = 0;
-    for (const Interval &slope : number.slope)
-        best = std::max(best, inward * std::max(slope.lo, -slope.hi));
+    for (std::size_t i = 0; i < 3; ++i)
+        best = std::max(best, inward * std::max(number.slope[i].lo, -number.slope[i].hi));
     return best;
 }
 
@@ -364,7 +146,8 @@ namespace {
 // Runs a tape over a box, and at its middle, step by step: what each number is that it writes.
 Slopes slopes_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                    const Point &lo, const Point &hi,
-                   const std::function<void(Register, const Varying &)> &see) {
+                   const std::function<void(Register, const Varying &)> &see,
+                   const std::array<double, 3> &along = {}) {
     const Field &field = evaluator.field;
     boxes.count = 16; // of which the first is looked at, and the second: its middle
     const Point middle = middle_point(lo, hi);
@@ -379,7 +162,8 @@ Slopes slopes_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes 
     for (std::size_t axis = 0; axis < 3; ++axis) {
         Varying &input = slopes.by_slot[slopes.slot(field.program.params[axis].address)];
         input.known = true;
-        input.slope[axis] = one;
+        input.slope[axis] = {1, 1};
+        input.slope[3] = {along[axis], along[axis]};
         input.id = ++ids;
     }
     std::vector<Varying> in;
@@ -430,6 +214,14 @@ Slopes slopes_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes 
 
 constexpr std::size_t longest_tape = 500; // steps
 
+// Whether a box is not in the inside of what the field is cut off at.
+bool reaches_cut(const Field &field, const Point &lo, const Point &hi) {
+    if (!field.cut) return false;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!(lo[i] > (*field.cut)[0][i] && hi[i] < (*field.cut)[1][i])) return true;
+    return false;
+}
+
 } // namespace
 
 std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
@@ -446,7 +238,7 @@ std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, c
 std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &tape,
                                   cpu::Boxes &boxes, const Point &lo, const Point &hi) {
     const cpu::Program::Slot &result = evaluator.field.program.results[0];
-    if (evaluator.field.cut || result.shared || tape.steps.size() > longest_tape)
+    if (reaches_cut(evaluator.field, lo, hi) || result.shared || tape.steps.size() > longest_tape)
         return std::nullopt;
     const Slopes slopes =
         slopes_over(evaluator, tape, boxes, lo, hi, [](Register, const Varying &) {});
@@ -455,15 +247,28 @@ std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &ta
     const double least = evaluator.ranges.lo[result.address + 1],
                  most = evaluator.ranges.hi[result.address + 1]; // at the middle
     const Point middle = middle_point(lo, hi);
-    Linear linear{0.5 * (least + most), 0.5 * (most - least) + 2 * field.error, {}};
+    Linear linear{0.5 * (least + most), 0.5 * (most - least) + 2 * field.error, {}, {}};
     for (std::size_t i = 0; i < 3; ++i) {
         const Interval slope = field.slope[i];
         const double reach = std::max(double(hi[i]) - middle[i], double(middle[i]) - lo[i]);
         linear.slope[i] = 0.5 * (slope.lo + slope.hi);
+        linear.spread[i] = 0.5 * (slope.hi - slope.lo) * (1 + 1e-9) + 1e-9 * size(slope);
         linear.off += 0.5 * (slope.hi - slope.lo) * reach;
     }
     linear.off *= 1 + 1e-9;
     return std::isfinite(linear.value + linear.off) ? std::optional(linear) : std::nullopt;
+}
+
+std::optional<double> least_slope_along(Evaluator &evaluator, const cpu::ShortTape &tape,
+                                        cpu::Boxes &boxes, const Point &lo, const Point &hi,
+                                        const std::array<double, 3> &along) {
+    const cpu::Program::Slot &result = evaluator.field.program.results[0];
+    if (result.shared || tape.steps.size() > longest_tape) return std::nullopt;
+    const Slopes slopes = slopes_over(
+        evaluator, tape, boxes, lo, hi, [](Register, const Varying &) {}, along);
+    const Varying field = slopes.at(result.address);
+    if (!field.known) return std::nullopt;
+    return field.slope[3].lo - 1e-9 * size(field.slope[3]);
 }
 
 } // namespace fathom::mesh

@@ -43,10 +43,16 @@ std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, c
 struct Linear {
     double value = 0, off = 0;
     std::array<double, 3> slope{};
+    std::array<double, 3> spread{}; // along each axis its slopes are no farther than this from that
 };
 // None where it is not known how the field changes, or it is cut off at bounds. `boxes` is memory.
 std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &tape,
                                   cpu::Boxes &boxes, const Point &lo, const Point &hi);
+
+// How fast the field rises along a direction at least, all over a box; none where that is not known.
+std::optional<double> least_slope_along(Evaluator &evaluator, const cpu::ShortTape &tape,
+                                        cpu::Boxes &boxes, const Point &lo, const Point &hi,
+                                        const std::array<double, 3> &along);
 
 // Whether a number is 0 somewhere: there angles, signs and sizes that are made of it have their cuts.
 inline bool has_cut(const Level &level) { return level.lo < 0 && level.hi > 0; }

@@ -32,6 +32,10 @@ struct Measures {
     MeshStatus status = MeshStatus::Done;
     std::string message; /**< why there is none, or what the mesh does not show, as Mesh::message */
     Enclosure volume;
+    /** Of the surface; without an upper end (infinite) where there are `open_places`: boxes in which
+     *  nothing bounds it, since the surface is not known to be a graph there. */
+    Enclosure area;
+    std::size_t open_places = 0;
     std::array<Enclosure, 3> center;
     std::array<Enclosure, 3> least, greatest; /**< the ends of the solid's box */
     /** Numbers of the mesh, of which nothing is proved: an error of the order of the square of its

@@ -209,6 +209,53 @@ TEST_CASE("the field lies about the plane that is said, wherever it is sampled")
     CHECK(close > 150); // faces of boxes, for one
 }
 
+TEST_CASE("the area of solids that are known lies between two numbers, which are near") {
+    struct Known {
+        const char *text;
+        double area, near; // the two numbers' distance, as a share of it
+    };
+    const double pi = std::numbers::pi;
+    const Known known[] = {
+        {"sphere(1)", 4 * pi, 0.03},
+        {"sphere(1).translate([5, -3, 2])", 4 * pi, 0.03},
+        {"sphere(1e-4)", 4e-8 * pi, 0.03},
+        {"sphere(1).scale(300)", 4 * pi * 9e4, 0.03},
+        {"box([1, 2, 3])", 22, 0.03},
+        {"box([1, 2, 3]).rotate(0.4, axis: [1, 2, 3])", 22, 0.08},
+        {"torus(1, 0.5)", 4 * pi * pi * 0.5, 0.16},
+        {"cylinder(0.5, 2)", 2.5 * pi, 0.06},
+        {"sphere(1).shell(0.2)", 4 * pi * (1.1 * 1.1 + 0.9 * 0.9), 0.04},
+        {"sphere(1) | sphere(1).translate(x: 5)", 8 * pi, 0.06},
+        {"sphere(1) | sphere(1).translate(x: 1)", 6 * pi, 0.05},
+        {"sphere(1) & sphere(1).translate(x: 1)", 2 * pi, 0.06},
+        {"sphere(1) - sphere(1).translate(x: 1)", 4 * pi, 0.06},
+        {"box(2) - box([1, 1, 3])", 24 - 2 + 8, 0.06},
+        {"capsule([-1, 0, 0], [1, 0, 0], 0.3)", 4 * pi * 0.09 + 2 * pi * 0.3 * 2, 0.15},
+    };
+    for (const Known &k : known) {
+        INFO(k.text);
+        const mesh::Measures of = measured(k.text, as_fine_as(48));
+        INFO(of.area.lo << " to " << of.area.hi << " at " << of.open_places);
+        CHECK(holds(of.area, k.area));
+        CHECK(of.area.hi - of.area.lo < k.near * k.area);
+        CHECK(of.open_places == 0);
+    }
+}
+
+TEST_CASE("an area without an upper end says at how many places, and is as large as a ball's") {
+    // No direction rises where the plane between two boxes comes to the surface.
+    const mesh::Measures two = measured("box(1) | box(1).translate(x: 1)", as_fine_as(16));
+    CHECK(two.open_places > 0);
+    CHECK(std::isinf(two.area.hi));
+    CHECK((two.area.lo > 9 && two.area.lo <= 10));
+    // The slopes of roots and signs are not known.
+    const mesh::Measures of = measured("cone(1, 2)", as_fine_as(16));
+    CHECK(of.open_places > 0);
+    CHECK(std::isinf(of.area.hi));
+    CHECK(of.area.lo <= std::numbers::pi * (1 + std::sqrt(5.0)));
+    CHECK(of.area.lo > 7);
+}
+
 TEST_CASE("what planes enclose holds the volume, and is narrow") {
     std::mt19937 dice(8);
     std::uniform_real_distribution<double> some(0.4, 1.6), turn(-1, 1);
