@@ -9,7 +9,7 @@ namespace fathom::mesh {
 
 struct Measures {
     Enclosure volume;
-    Enclosure area; // without an upper end where there are
+    Enclosure area;              // without an upper end where there are
     std::size_t open_places = 0; // … boxes of which none is known
     std::array<Enclosure, 3> center;
     std::array<Enclosure, 3> least, greatest; // the ends of the solid's box
