@@ -219,8 +219,7 @@ void Cases::add_least_roots(std::vector<Inequality> &rows, const Case &c) {
         double least = 0;
         looked_.take(16 * (square.size() + 1));
         std::vector<double> divisors;
-        const auto parts =
-            square.empty() ? std::nullopt : squares_in(square, 0, &least, &divisors);
+        const auto parts = square.empty() ? std::nullopt : squares_in(square, 0, &least, &divisors);
         if (!parts || parts->size() > most_parts) continue;
         if (least > lost)
             rows.push_back({add(atom(r), constant(std::sqrt(least) * (1 - lost)), -1), false});

@@ -125,8 +125,8 @@ class SignedFunction : public Chance {
         const std::string k = between(0.5, 4), off = pick(6) == 0 ? between(0.9, 1.1) : "1";
         switch (pick(13)) {
         case 11: // steps of single precision at the corners are 4.9e-4
-            return of({"0.1 * asin(sin(9 * u))", "0.1 * acos(cos(8 * u))",
-                       "0.1 * asin(cos(10 * u))"});
+            return of(
+                {"0.1 * asin(sin(9 * u))", "0.1 * acos(cos(8 * u))", "0.1 * asin(cos(10 * u))"});
         case 0: return "log(abs(u) + sqrt(u * u + " + off + "))";
         case 1: return "log(" + off + " + " + k + " * abs(u))";
         case 2: return "(" + off + " - exp(-" + k + " * abs(u)))";

@@ -37,15 +37,16 @@ const std::string small = "implicit(p => length(p) - 1)\n";
 } // namespace
 
 TEST_CASE("a proof that takes too much work names the loop that most of it goes into") {
-    const Said loop = said(small +
-                               "implicit(p => {\n"
-                               "  var q = p\n"
-                               "  for k in 0..3 { q = abs(q) - 0.3 }\n"
-                               "  var s = 0.0\n"
-                               "  for i in 0..900 { s = sin((i + 1) * p.x + s) + cos(i * p.y + s) }\n"
-                               "  length(q) - 1 + 0.0000001 * s\n}, within: ball(2))\n" +
-                               small,
-                           20'000);
+    const Said loop =
+        said(small +
+                 "implicit(p => {\n"
+                 "  var q = p\n"
+                 "  for k in 0..3 { q = abs(q) - 0.3 }\n"
+                 "  var s = 0.0\n"
+                 "  for i in 0..900 { s = sin((i + 1) * p.x + s) + cos(i * p.y + s) }\n"
+                 "  length(q) - 1 + 0.0000001 * s\n}, within: ball(2))\n" +
+                 small,
+             20'000);
     CHECK(loop.at == "for i in 0..900");
     CHECK(says(loop, "whose body runs 900 times"));
     CHECK(says(loop, "most of it goes into this loop"));
