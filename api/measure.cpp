@@ -45,6 +45,7 @@ Measures measured(const Scene &scene, const MeshOptions &options) {
     result.volume = enclosure_of(found.volume);
     result.area = enclosure_of(found.area);
     result.open_places = found.open_places;
+    result.open_place = found.open_place;
     for (std::size_t i = 0; i < 3; ++i) {
         result.center[i] = enclosure_of(found.center[i]);
         result.least[i] = enclosure_of(found.least[i]);

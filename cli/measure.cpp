@@ -113,7 +113,10 @@ Json json_of(const v1::Measures &of, const MeasureCommand &command) {
     Json json;
     json["volume"] = json_of(of.mesh_volume, of.volume);
     json["area"] = json_of(of.mesh_area, of.area);
-    if (of.open_places > 0) json["area"]["open_places"] = of.open_places;
+    if (of.open_places > 0) {
+        json["area"]["open_places"] = of.open_places;
+        json["area"]["open_place"] = of.open_place;
+    }
     if (command.density) {
         const double one = mass_of_one(command);
         json["mass"] = json_of(one * best(of.mesh_volume, of.volume), times(of.volume, one));
@@ -298,8 +301,10 @@ Exit run(const MeasureCommand &command, Terminal &terminal) {
         else
             put_table(title, rows_of(subject.of, command), size_of(subject.of), terminal);
         if (subject.of && subject.of.open_places > 0)
-            terminal.put(fmt::format("  (nothing bounds the area in {} of the smallest boxes)\n",
-                                     subject.of.open_places));
+            terminal.put(
+                fmt::format("  (the area has no upper end: in {} of the smallest boxes it is "
+                            "not known how the surface runs, near [{:.4g}] for instance)\n",
+                            subject.of.open_places, fmt::join(subject.of.open_place, ", ")));
     }
     for (const Between &between : clearances) put_clearance(between, command, terminal);
     return done;

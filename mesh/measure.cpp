@@ -26,7 +26,8 @@ struct CellSums {
     Real3 moment{}, least_moment{}, most_moment{}; // of what is inside; of what is open
     double sizes = 0;                              // of all moments' terms
     double least_area = 0, most_area = 0;
-    std::size_t open_places = 0; // boxes of which no greatest area is known
+    std::size_t open_places = 0; // boxes of which no greatest area is known, and the first of them
+    Real3 open_place{};
     Real3 outer_lo{unbounded, unbounded, unbounded}, outer_hi{-unbounded, -unbounded, -unbounded};
     Real3 known_lo = outer_lo, known_hi = outer_hi; // of points that are in the solid
 
@@ -73,9 +74,15 @@ struct CellSums {
             most_moment[i] += volume * b * (b > 0 ? most : least);
         }
     }
+    void add_open_place(const Point &lo, const Point &hi) {
+        for (std::size_t i = 0; open_places == 0 && i < 3; ++i)
+            open_place[i] = 0.5 * (double(lo[i]) + hi[i]);
+        ++open_places;
+    }
     void add(const CellSums &other) {
         inside += other.inside, open += other.open, sizes += other.sizes;
         least_area += other.least_area, most_area += other.most_area;
+        if (open_places == 0) open_place = other.open_place;
         open_places += other.open_places;
         for (std::size_t i = 0; i < 3; ++i) {
             moment[i] += other.moment[i];
@@ -246,7 +253,7 @@ void walk_piece(Splitter &splitter, const cpu::ShortTape &tape, const Piece &pie
         asked && seam_in(splitter.evaluator, tape, splitter.boxes, piece.lo, piece.hi, walk.thin);
     if (touches || last) {
         add_open(piece, linear, walk.middle, sums);
-        sums.open_places += !touches;
+        if (!touches) sums.add_open_place(piece.lo, piece.hi);
         return;
     }
     if (levels <= 0) --spare;
@@ -265,8 +272,10 @@ void walk_leaf(Splitter &splitter, const Octree &octree, const Cell &leaf, const
         return walk_piece(splitter, *tape, open[0], walk.by_planes, for_places, spare, walk, sums);
     for (int level = 0; level < walk.by_dividing && !open.empty(); ++level)
         open = divided(splitter, *tape, open, walk, sums);
-    for (const Piece &piece : open) add_open(piece, {}, walk.middle, sums);
-    sums.open_places += open.size();
+    for (const Piece &piece : open) {
+        add_open(piece, {}, walk.middle, sums);
+        sums.add_open_place(piece.lo, piece.hi);
+    }
 }
 
 // What the octree left out as inside, and the corners that are in the solid.
@@ -338,6 +347,7 @@ Measures measure(const ir::Scene &scene, const Settings &settings, const Made &m
     measures.area = {std::max(sums.least_area, ball) * (1 - rounding_share),
                      sums.open_places > 0 ? unbounded : sums.most_area * (1 + rounding_share)};
     measures.open_places = sums.open_places;
+    measures.open_place = sums.open_place;
     for (std::size_t i = 0; i < 3; ++i) {
         const double slack =
             rounding_share * (sums.sizes + std::fabs(middle[i]) * measures.volume.hi);

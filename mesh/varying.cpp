@@ -50,7 +50,8 @@ Ids joined(const Ids &a, const Ids &b) {
             if (id != 0) all.push_back(id);
     std::ranges::sort(all);
     all.erase(std::unique(all.begin(), all.end()), all.end());
-    Ids made{a.known && b.known && all.size() <= made.of.size(), {}};
+    Ids made;
+    made.known = a.known && b.known && all.size() <= made.of.size();
     if (made.known) std::ranges::copy(all, made.of.begin());
     return made;
 }

@@ -8,6 +8,7 @@
 #include "proof/flattener.h"
 #include "proof/forms.h"
 #include "proof/half_waves.h"
+#include "proof/machine.h"
 #include "proof/polar.h"
 #include "proof/roots.h"
 

@@ -36,6 +36,7 @@ struct Measures {
      *  nothing bounds it, since the surface is not known to be a graph there. */
     Enclosure area;
     std::size_t open_places = 0;
+    std::array<double, 3> open_place{}; /**< the middle of one of them */
     std::array<Enclosure, 3> center;
     std::array<Enclosure, 3> least, greatest; /**< the ends of the solid's box */
     /** Numbers of the mesh, of which nothing is proved: an error of the order of the square of its
