@@ -47,6 +47,37 @@ Slice slice_of(fathom::mesh::Section &section, float at) {
     return slice;
 }
 
+double width_of(const std::vector<PlanePoint> &contour) { // twice its area by its length
+    double length = 0;
+    for (std::size_t k = 0; k < contour.size(); ++k) {
+        const PlanePoint &p = contour[k], &q = contour[(k + 1) % contour.size()];
+        length += std::hypot(double(q[0]) - p[0], double(q[1]) - p[1]);
+    }
+    return length > 0 ? 2 * std::fabs(fathom::mesh::area_of({contour})) / length : 0;
+}
+
+// Of walls and gaps about as wide as the squares that contours are looked for in: these show them in
+// pieces. Empty where there are hardly any.
+std::string advice_on_pieces(const Slices &cut) {
+    constexpr double narrow = 1.5;    // sides of squares
+    constexpr std::size_t hardly = 3; // in one slice
+    std::size_t most = 0;
+    float at = 0;
+    for (const Slice &slice : cut.slices) {
+        const auto pieces = static_cast<std::size_t>(
+            std::ranges::count_if(slice.contours, [&](const std::vector<PlanePoint> &contour) {
+                return width_of(contour) < narrow * cut.side;
+            }));
+        if (pieces > most) most = pieces, at = slice.at;
+    }
+    if (most < hardly) return "";
+    return fmt::format(
+        "{} contours{} are about as narrow as the squares that they are looked for "
+        "in, as the pieces of a thin wall or gap are: a tolerance of {:.2g} may show "
+        "it whole",
+        most, cut.slices.size() > 1 ? " at " + format_shortest(at) : "", cut.side / 2);
+}
+
 Slices sliced(const Scene &scene, Axis axis, std::span<const float> heights,
               const MeshOptions &options) {
     const fathom::mesh::Settings settings = settings_of(options);
@@ -75,6 +106,7 @@ Slices sliced(const Scene &scene, Axis axis, std::span<const float> heights,
     result.along = {static_cast<float>(box.lo[number_of(axis)]),
                     static_cast<float>(box.hi[number_of(axis)])};
     result.rests_on = rests_on(cut.field.proved);
+    result.message = advice_on_pieces(result);
     return result;
 }
 

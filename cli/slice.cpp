@@ -123,6 +123,7 @@ Exit make(const SliceCommand &command, const SolidFrame &frame, Terminal &termin
         return say_refusal(command.solid, frame.number ? frame.out : command.solid.scene.file,
                            "slices", cut.status, cut.message, terminal);
     say_undecided(cut, command, frame.out, terminal);
+    if (!cut.message.empty()) terminal.say(fmt::format("{}: {}", frame.out, cut.message));
     Json json{{"axis", std::string(1, command.axis)}, {"side", cut.side}};
     json["slices"] = Json::array();
     std::size_t empty = 0;

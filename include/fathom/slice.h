@@ -51,7 +51,7 @@ struct Slice {
 
 struct Slices {
     MeshStatus status = MeshStatus::Done;
-    std::string message; /**< why there are none, as Mesh::message */
+    std::string message; /**< why there are none; else what the contours may show in pieces */
     PlaneBox frame;      /**< holds all slices: the box of the solid, or MeshOptions::bounds */
     std::array<float, 2> along{}; /**< where that box begins and ends along the axis */
     double side = 0;              /**< of the squares in which contours are looked for, at most */

@@ -118,6 +118,24 @@ TEST_CASE("what is said of planes without a contour is true, and areas lie in wh
     }
 }
 
+TEST_CASE("contours that may be pieces of one thin wall are told, and what shows it whole") {
+    ScratchFolder folder;
+    folder.write("ring.sdf", "ring(20, 19.9)\n");
+    folder.write("slot.sdf", "(box([40, 20, 4]) - box([0.05, 30, 9]).rotate(30deg, axis: Z))\n");
+    folder.write("dots.sdf", "for i in 0..9 { sphere(1).translate(x: 3 * i) }\n");
+    const Result ring = shell(folder, "fathom slice ring.sdf -o ring.svg --json");
+    CHECK(Json::parse(ring.out)["slices"][0]["contours"] > 50);
+    CHECK(contains(ring.err, "contours are about as narrow as the squares"));
+    CHECK(contains(ring.err, "a tolerance of 0.039 may show it whole"));
+    const Result whole =
+        shell(folder, "fathom slice ring.sdf -o ring.svg --json --tolerance 0.039");
+    CHECK(Json::parse(whole.out)["slices"][0]["contours"] == 2);
+    CHECK(whole.err.empty());
+    const Result slot = shell(folder, "fathom slice slot.sdf --z 0,1 -o slot.svg");
+    CHECK(contains(slot.err, "contours at 0 are about as narrow"));
+    CHECK(shell(folder, "fathom slice dots.sdf --z 0 -o dots.svg --resolution 64").err.empty());
+}
+
 TEST_CASE("a scene of flat shapes is drawn without a height, as exactly as a slice") {
     ScratchFolder folder;
     folder.write("plate.sdf", "param r = 4 in 1..5\n"
