@@ -76,20 +76,18 @@ void certify_border(const Plane2 &plane, const Squares &squares, const Lines &li
                     std::vector<bool> &undecided) {
     constexpr int seam_depth = 2; // halvings between looks for seams
     FlatBoxes boxes(plane, evaluator);
-    double inside = squares.inside, open_area = 0;
+    SolidArea solid = squares.solid;
+    double open_area = 0;
     for (std::size_t k = 0; k < squares.open.size(); ++k) {
         const Square &square = squares.open[k];
         const cpu::ShortTape &tape = *squares.tapes[static_cast<std::size_t>(square.tile)];
         std::vector<Rectangle> open{rectangle_of(plane, square)};
         const std::vector<std::int32_t> near = nearness.about(square);
-        // Counted as what it is but for gaps and sheets, or as open where it has any.
+        // Where it is not empty the field is 0, or next to that, all over: counted as open.
         const auto is_seam = [&](const Rectangle &r) {
             if (!(reach_of(plane, lines, near, r) > plane.side())) return false;
             const std::optional<Seam> seam = touching_in(r, boxes, tape);
-            if (seam && seam->width > 0)
-                open_area += area_of(r);
-            else if (seam && seam->solid)
-                inside += area_of(r);
+            if (seam && (seam->width > 0 || seam->solid)) open_area += area_of(r);
             return seam.has_value();
         };
         // What is far from all contours is open to the end where the plane lies in a face.
@@ -97,7 +95,7 @@ void certify_border(const Plane2 &plane, const Squares &squares, const Lines &li
         for (int level = 0; !open.empty(); ++level) {
             if (level % seam_depth == 0) std::erase_if(open, is_seam);
             if (level == halvings) break;
-            open = open_quarters(boxes, tape, open, inside);
+            open = open_quarters(boxes, tape, open, solid);
         }
         double farthest = 0;
         for (const Rectangle &r : open) {
@@ -109,7 +107,8 @@ void certify_border(const Plane2 &plane, const Squares &squares, const Lines &li
         else
             undecided[k] = true;
     }
-    section.area = {inside / rounded_out, (inside + open_area) * rounded_out};
+    section.area = {solid.inside / rounded_out,
+                    (solid.inside + solid.touched + open_area) * rounded_out};
 }
 
 // A place on a contour, and where else the field's sign is asked.

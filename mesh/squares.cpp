@@ -165,8 +165,15 @@ void FlatBoxes::run(std::size_t count, const cpu::ShortTape &tape) {
     ranges_over(evaluator, tape, boxes);
 }
 
-Space FlatBoxes::space(std::size_t k, double half) const {
-    return space_of(evaluator, 16 * (k / 8) + k % 8, half, plane.lattice.ulp, true, true);
+Space FlatBoxes::space(std::size_t k, const Rectangle &r, SolidArea &solid) const {
+    const std::size_t slot = 16 * (k / 8) + k % 8;
+    const auto of = [&](bool closed) {
+        return space_of(evaluator, slot, half_diagonal_of(r), plane.lattice.ulp, true, closed);
+    };
+    const Space space = of(true);
+    if (space == Space::Inside)
+        (of(false) == Space::Inside ? solid.inside : solid.touched) += area_of(r);
+    return space;
 }
 
 double half_diagonal_of(const Rectangle &r) {
@@ -177,16 +184,13 @@ double area_of(const Rectangle &r) {
 }
 
 std::vector<Rectangle> open_quarters(FlatBoxes &boxes, const cpu::ShortTape &tape,
-                                     const std::vector<Rectangle> &whole, double &inside) {
+                                     const std::vector<Rectangle> &whole, SolidArea &solid) {
     std::vector<Rectangle> open, parts;
     const auto flush = [&] {
         for (std::size_t k = 0; k < parts.size(); ++k) boxes.put(k, parts[k]);
         boxes.run(parts.size(), tape);
-        for (std::size_t k = 0; k < parts.size(); ++k) {
-            const Space space = boxes.space(k, half_diagonal_of(parts[k]));
-            if (space == Space::Open) open.push_back(parts[k]);
-            if (space == Space::Inside) inside += area_of(parts[k]);
-        }
+        for (std::size_t k = 0; k < parts.size(); ++k)
+            if (boxes.space(k, parts[k], solid) == Space::Open) open.push_back(parts[k]);
         parts.clear();
     };
     for (const Rectangle &r : whole) {
@@ -239,10 +243,7 @@ Squares find_squares(const Plane2 &plane, Evaluator &evaluator) {
                 boxes.run(parts.size(), *tile.tape);
                 std::uint64_t apart_in = 0; // of the first eight
                 for (std::size_t k = 0; k < parts.size(); ++k) {
-                    const Rectangle r = rectangle(parts[k]);
-                    const Space space = boxes.space(k, half_diagonal_of(r));
-                    if (space == Space::Inside) squares.inside += area_of(r);
-                    if (space != Space::Open) continue;
+                    if (boxes.space(k, rectangle(parts[k]), squares.solid) != Space::Open) continue;
                     if (apart)
                         apart_in |= std::uint64_t{1} << k;
                     else

@@ -38,6 +38,12 @@ struct Plane2 {
     }
 };
 
+// The area of squares that are left out as parts of the solid.
+struct SolidArea {
+    double inside = 0;  // the field is negative
+    double touched = 0; // it is 0 for some points, or all: the plane may only touch the solid there
+};
+
 // Flat boxes, as ranges take them: with their middles, which are points.
 struct FlatBoxes {
     FlatBoxes(const Plane2 &of, Evaluator &by);
@@ -48,18 +54,19 @@ struct FlatBoxes {
     void put(std::size_t k, const Rectangle &r);
     // The first of them, at most at_once, by a tape that holds in all.
     void run(std::size_t count, const cpu::ShortTape &tape);
-    Space space(std::size_t k, double half) const; // after a run; `half`: half their diagonal
+    // After a run: of the one that is this rectangle; where it is solid it is counted.
+    Space space(std::size_t k, const Rectangle &r, SolidArea &solid) const;
 };
 double half_diagonal_of(const Rectangle &r);
 double area_of(const Rectangle &r);
 // The quarters of rectangles that may hold border. The area of those in the solid is added.
 std::vector<Rectangle> open_quarters(FlatBoxes &boxes, const cpu::ShortTape &tape,
-                                     const std::vector<Rectangle> &whole, double &inside);
+                                     const std::vector<Rectangle> &whole, SolidArea &solid);
 
 struct Squares {
     std::vector<Square> open;   // sorted
     std::vector<TapePtr> tapes; // by tile
-    double inside = 0;          // the area of what was left out as inside
+    SolidArea solid;            // what was left out
 };
 Squares find_squares(const Plane2 &plane, Evaluator &evaluator);
 const Square *find(const Squares &squares, std::int32_t i, std::int32_t j);
