@@ -21,9 +21,16 @@ Json place(const Lines &lines, std::size_t offset) {
     return Client::at(at.line, at.character, uri);
 }
 
+// Once the proof is done, for which a hover waits a moment and no more.
 std::string hover_at(Client &client, const Lines &lines, std::size_t offset) {
-    const Json hover = client.result("textDocument/hover", place(lines, offset));
-    return hover.is_null() ? "" : hover.at("contents").at("value").get<std::string>();
+    constexpr int most = 200;
+    std::string said;
+    for (int asked = 0; asked < most; ++asked) {
+        const Json hover = client.result("textDocument/hover", place(lines, offset));
+        said = hover.is_null() ? "" : hover.at("contents").at("value").get<std::string>();
+        if (said.find("not proved yet") == std::string::npos) break;
+    }
+    return said;
 }
 
 std::set<std::string> labels_at(Client &client, const Lines &lines, std::size_t offset) {
