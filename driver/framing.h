@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
+#include "ir/interval.h"
 #include "ir/scene.h"
 
 namespace fathom::driver {

@@ -15,6 +15,7 @@
 #include "proof/border_sides.h"
 #include "proof/continuity.h"
 #include "proof/machine.h"
+#include "proof/polynomials.h"
 
 #include <algorithm>
 #include <cmath>
