@@ -26,7 +26,7 @@ Diagnostic &WordReading::foreign(std::uint32_t begin, std::uint32_t end, std::st
                                  std::string replacement) {
     std::string_view shown = replacement;
     if (shown.ends_with(' ')) shown.remove_suffix(1);
-    std::string help = "write " + quoted_code(shown);
+    std::string help = "write `" + std::string(shown) + "`";
     return report(Code::ForeignSyntax, begin, end, std::move(message))
         .help(std::move(help), {{span(begin, end), std::move(replacement)}});
 }
