@@ -133,13 +133,17 @@ std::optional<NodeId> numbers_beside(Graph &graph, NodeId x, NodeId place) {
 }
 
 // x less the way from the nearest point of a lattice, or one of two such ways, as the point: it is
-// read by what is told of a cell, and there the way's sign is not seen.
-std::optional<NodeId> as_point(Graph &graph, NodeId x, NodeId way) {
+// read by what is told of a cell, and there the way's sign is not seen. Choices among choices are
+// opened a few times and no more: their arms may be shared.
+std::optional<NodeId> as_point(Graph &graph, NodeId x, NodeId way, int depth = 0) {
+    constexpr int most = 3;
     const ir::Node node = graph[way];
     if (node.op == Op::Select) {
-        const auto a = as_point(graph, x, graph.arg(way, 1)),
-                   b = as_point(graph, x, graph.arg(way, 2));
-        if (!a || !b) return {};
+        if (depth == most) return {};
+        const auto a = as_point(graph, x, graph.arg(way, 1), depth + 1);
+        if (!a) return {};
+        const auto b = as_point(graph, x, graph.arg(way, 2), depth + 1);
+        if (!b) return {};
         return graph.make(Op::Select, {graph.arg(way, 0), *a, *b});
     }
     const auto found = lattice(graph, way);
