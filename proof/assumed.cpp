@@ -204,7 +204,9 @@ std::string value_text(const Values &v, int size) {
     return out + "]";
 }
 
-// Fewer where a field has long loops, so that the work is bounded: about 5 million operations.
+// Fewer where a field has long loops, so that the work is bounded: about 5 million operations, or
+// the fewest pairs.
+constexpr int fewest_pairs = 2;
 double share_of(const ir::Scene &scene, NodeId field) {
     return std::min(1.0, 1e3 / ir::operations(scene.graph, field));
 }
@@ -234,7 +236,7 @@ void Prover::test_estimate(ShapeId id, NodeId field, double estimate) {
     const int dims = scene.shapes[id].dims;
     SomeWays ways = ways_in(here, dims);
     const double share = share_of(scene, field);
-    Sample sample = by_chance(machine, ways, estimate, std::max(10, int(2000 * share)));
+    Sample sample = by_chance(machine, ways, estimate, std::max(fewest_pairs, int(2000 * share)));
     climb(machine, ways, sample.steepest, int(400 * share));
     const auto &[a, b] = static_cast<const Pair &>(sample.steepest);
     const auto [one_end, other_end] = two_points(a, b, dims);
@@ -308,9 +310,9 @@ void Prover::test_stated(ShapeId id, NodeId field, double stated, const FieldBou
         const Ranges one = held_at(tape, ranges, how);
         Machine machine(tape, one);
         machine.read_values();
-        Steepest top =
-            by_chance(machine, ways, stated, std::max(10, int(1000 * share) / int(helds.size())))
-                .steepest;
+        Steepest top = by_chance(machine, ways, stated,
+                                 std::max(fewest_pairs, int(1000 * share) / int(helds.size())))
+                           .steepest;
         climb(machine, ways, top, int(200 * share));
         const Steepest longest =
             by_gradients(machine, ways, stated, int(1000 * share) / int(helds.size()));

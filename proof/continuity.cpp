@@ -126,18 +126,22 @@ class SameWhereZero {
 constexpr ir::OpSet is_step_of_arms{Op::Floor, Op::Ceil, Op::Round, Op::Trunc,
                                     Op::Fract, Op::Mod,  Op::Atan2};
 
-std::vector<NodeId> steps_in(const Graph &graph, NodeId a, NodeId b) { // the outermost
+std::vector<NodeId> steps_in(const Graph &graph, NodeId a, NodeId b, Work &work) { // the outermost
     std::vector<NodeId> todo{a, b}, out;
-    std::unordered_set<NodeId> seen;
+    std::vector<bool> seen(graph.size());
+    std::size_t visited = 0;
     while (!todo.empty()) {
         const NodeId id = todo.back();
         todo.pop_back();
-        if (!seen.insert(id).second || !graph.reads(id).point) continue;
+        if (seen[id.index] || !graph.reads(id).point) continue;
+        seen[id.index] = true;
+        ++visited;
         if (is_step_of_arms[graph[id].op])
             out.push_back(id);
         else
             todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
     }
+    work.take(visited);
     return out;
 }
 
@@ -165,7 +169,7 @@ bool is_between_turns(const Graph &graph, Op op, const std::vector<NodeId> &args
 
 // Tried with u replaced by v, v by u, or one atom of u - v by what the others make it.
 bool agree_where_equal(Graph &graph, NodeId u, NodeId v, NodeId a, NodeId b, Work &work) {
-    const std::vector<NodeId> steps = steps_in(graph, a, b);
+    const std::vector<NodeId> steps = steps_in(graph, a, b, work);
     auto agree = [&](NodeId from, NodeId to) {
         if (work.spent()) return false;
         ir::Substitution map{{from, to}};

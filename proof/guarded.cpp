@@ -51,7 +51,7 @@ int edged_argument(Op op) {
 }
 
 // A number with its bounds in its place, wherever it stands in an expression.
-NodeId with_bounds(Graph &graph, NodeId root, const std::vector<Order> &orders) {
+NodeId with_bounds(Graph &graph, NodeId root, const std::vector<Order> &orders, Work &work) {
     constexpr std::size_t most_below = 48;
     std::vector<NodeId> todo{root};
     std::unordered_set<NodeId> below;
@@ -59,6 +59,7 @@ NodeId with_bounds(Graph &graph, NodeId root, const std::vector<Order> &orders) 
         const NodeId id = todo.back();
         todo.pop_back();
         if (!below.insert(id).second) continue;
+        work.take(1);
         if (below.size() > most_below) return root;
         todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
     }
@@ -96,7 +97,7 @@ bool is_never_negative(const Graph &graph, NodeId id, int depth) {
     return node.op != Op::Max;
 }
 
-NodeId on_its_side(Graph &graph, NodeId condition, bool holds, NodeId arm) {
+NodeId on_its_side(Graph &graph, NodeId condition, bool holds, NodeId arm, Work &work) {
     const std::vector<Order> orders = orders_of(graph, condition, holds);
     if (orders.empty()) return arm;
     ir::Substitution kept;
@@ -106,6 +107,7 @@ NodeId on_its_side(Graph &graph, NodeId condition, bool holds, NodeId arm) {
         const NodeId id = todo.back();
         todo.pop_back();
         if (!seen.insert(id).second) continue;
+        work.take(1);
         if (seen.size() > most_nodes) return arm;
         const ir::Node node = graph[id];
         const int edged = edged_argument(node.op);
@@ -122,7 +124,7 @@ NodeId on_its_side(Graph &graph, NodeId condition, bool holds, NodeId arm) {
         // Forms that such a root is part of would not be seen with other numbers in it.
         if (number == before && graph[number].type == ir::Type::Float &&
             !is_never_negative(graph, number))
-            number = with_bounds(graph, number, orders);
+            number = with_bounds(graph, number, orders, work);
         if (number == before) continue;
         at = splat ? graph.make(Op::Splat, graph[at].type, {number}) : number;
         kept[id] = graph.make(node.op, node.type, args, node.payload);

@@ -450,8 +450,10 @@ NodeId Flattener::by_component(const std::vector<NodeId> &choice) {
 
 Slot Flattener::choice(Scope &scope, NodeId id, Instruction out) {
     const std::vector<NodeId> args = args_of(id);
-    out.args = {slot(scope, args[0]), slot(scope, on_its_side(graph, args[0], true, args[1])),
-                slot(scope, on_its_side(graph, args[0], false, args[2]))};
+    const auto arm = [&](NodeId value, bool holds) {
+        return slot(scope, on_its_side(graph, args[0], holds, value, context.work));
+    };
+    out.args = {slot(scope, args[0]), arm(args[1], true), arm(args[2], false)};
     if (!varies[out.args[0]]) {
         out.form = Form::Joined; // either arm, the same for all points
     } else if (out.cancels) {

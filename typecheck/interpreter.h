@@ -67,7 +67,10 @@ struct Frame {
     std::uint32_t parent = 0; // itself for the outermost
     std::vector<Binding> bindings;
     std::unique_ptr<std::unordered_map<Symbol, std::uint32_t>> index; // of a module
-    bool captured = false;                                            // a closure refers to it
+    // Of a block of many names: the last binding of each, of the first `indexed` bindings.
+    std::unordered_map<Symbol, std::uint32_t> last_of;
+    std::size_t indexed = 0;
+    bool captured = false; // a closure refers to it
 };
 
 // A function value with the frame it was made in.

@@ -119,13 +119,15 @@ std::optional<int> known_iterations(Interpreter &ev, Span place, ir::NodeId cond
     }
     ir::Substitution now;
     for (std::size_t k : used) now[vars[k]] = initial[k];
-    for (int iteration = 0; iteration < limit && spend(ev, place, 1 + used.size()); ++iteration) {
-        const ir::NodeId go = ir::substitute(g, condition, now);
+    std::size_t visited = used.size(); // nodes, which an iteration costs
+    for (int iteration = 0; iteration < limit && spend(ev, place, 1 + visited); ++iteration) {
+        visited = 0;
+        const ir::NodeId go = ir::substitute(g, condition, now, visited);
         if (!g.is_constant(go)) return std::nullopt;
         if (g.constant_of(go).value[0] == 0) return iteration;
         ir::Substitution after;
         for (std::size_t k : used) {
-            after[vars[k]] = ir::substitute(g, next[k], now);
+            after[vars[k]] = ir::substitute(g, next[k], now, visited);
             if (!g.is_constant(after[vars[k]])) return std::nullopt;
         }
         now = std::move(after);

@@ -27,8 +27,24 @@ std::uint32_t push_frame(Interpreter &ev, std::uint32_t parent) {
 // one.
 void pop_frame(Interpreter &ev, std::uint32_t frame) {
     if (frame + 1 != ev.frame_count || ev.frames[frame].captured) return;
-    ev.frames[frame].bindings.clear();
+    Frame &f = ev.frames[frame];
+    f.bindings.clear();
+    if (f.indexed > 0) f.last_of.clear(), f.indexed = 0;
     --ev.frame_count;
+}
+
+// The last binding of a name in a block, call or iteration; few are quicker searched than looked up.
+static std::optional<std::uint32_t> slot_in_block(Frame &f, Symbol name) {
+    constexpr std::size_t few = 32;
+    if (f.bindings.size() > few) {
+        for (; f.indexed < f.bindings.size(); ++f.indexed)
+            f.last_of[f.bindings[f.indexed].name] = static_cast<std::uint32_t>(f.indexed);
+        const auto it = f.last_of.find(name);
+        return it == f.last_of.end() ? std::nullopt : std::optional(it->second);
+    }
+    for (std::size_t i = f.bindings.size(); i-- > 0;)
+        if (f.bindings[i].name == name) return static_cast<std::uint32_t>(i);
+    return std::nullopt;
 }
 
 bool is_builtin(Symbol name) { return name < builtins().size(); }
@@ -53,12 +69,11 @@ void declare(Interpreter &ev, std::uint32_t frame, Symbol name, Value value, boo
              Span place) {
     Frame &f = ev.frames[frame];
     if (!f.index) {
-        (void)spend(ev, place, f.bindings.size() / 2); // they are searched
-        for (const Binding &b : f.bindings) {
-            if (b.name != name || !b.declared.source || !place.source) continue;
+        const auto slot = slot_in_block(f, name);
+        if (slot && f.bindings[*slot].declared.source && place.source) {
             report(ev, Code::DuplicateName, place,
                    fmt::format("`{}` is declared twice in this block", ev.symbol_names[name]))
-                .label(b.declared, "first declared here");
+                .label(f.bindings[*slot].declared, "first declared here");
             return;
         }
     } else {
@@ -95,13 +110,9 @@ std::optional<std::uint32_t> slot_in_module(Interpreter &ev, std::uint32_t frame
 
 std::optional<Found> find_name(Interpreter &ev, std::uint32_t frame, Symbol name) {
     for (;;) {
-        const Frame &f = ev.frames[frame]; // stale once a module was read
-        if (f.index) {
-            if (auto slot = slot_in_module(ev, frame, name)) return Found{frame, *slot};
-        } else {
-            for (std::size_t i = f.bindings.size(); i-- > 0;)
-                if (f.bindings[i].name == name) return Found{frame, static_cast<std::uint32_t>(i)};
-        }
+        const auto slot = ev.frames[frame].index ? slot_in_module(ev, frame, name)
+                                                 : slot_in_block(ev.frames[frame], name);
+        if (slot) return Found{frame, *slot};
         if (frame == ev.prelude_frame) return std::nullopt;
         frame = ev.frames[frame].parent;
     }
