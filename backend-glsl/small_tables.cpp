@@ -8,7 +8,7 @@ namespace fathom::glsl {
 
 namespace {
 
-constexpr std::string_view head = "#version 330 core\n";
+constexpr std::string_view desktop_head = "#version 330 core\n";
 
 // The functions of 3.30 that texts of ours use and 1.30 lacks, with bodies that do something else:
 // nothing is run. What they would be in constant expressions they are not, which is refused.
@@ -66,8 +66,8 @@ bool in_word(char c) { return is_letter(c) || (c >= '0' && c <= '9'); }
 } // namespace
 
 std::optional<std::string> for_small_tables(const std::string &text) {
-    if (!text.starts_with(head)) return std::nullopt;
-    const std::string_view rest = std::string_view(text).substr(head.size());
+    if (!text.starts_with(desktop_head)) return std::nullopt;
+    const std::string_view rest = std::string_view(text).substr(desktop_head.size());
     for (std::size_t i = 0; i < rest.size();) {
         std::size_t end = i + 1;
         if (!is_letter(rest[i])) { // of a number the letters, too, which are none of those words

@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr std::string_view mark = "fathom sums 1\n";
 
-std::string bytes_of(std::span<const double> values) {
+std::string bytes_of_numbers(std::span<const double> values) {
     std::string bytes;
     bytes.reserve(8 * values.size());
     for (const double value : values) {
@@ -39,7 +39,7 @@ std::vector<double> values_of(std::string_view bytes) {
 bool is_sums(std::string_view bytes) { return bytes.starts_with(mark); }
 
 std::string write_sums(const Sums &sums) {
-    const std::string data = bytes_of(sums.values);
+    const std::string data = bytes_of_numbers(sums.values);
     const Json head{{"note", text_of(sums.note)},
                     {"undecided", sums.undecided},
                     {"undecided_shadows", sums.undecided_shadows},

@@ -20,8 +20,8 @@ constexpr std::size_t max_nodes_of_mean = 96, max_pairs = 8, max_instructions = 
                       max_parts_of_mean = 32;
 constexpr double max_steepness = 1.3; // 1 + 2e
 // Sizes of both numbers; within the lesser ones exponentials of them are in single precision.
-constexpr double reaches[] = {1e6, 10};
-constexpr ir::OpSet opaque{Op::Point, Op::Loop, Op::LoopResult, Op::Call, Op::Cached};
+constexpr double sizes_of_both[] = {1e6, 10};
+constexpr ir::OpSet opaque_to_means{Op::Point, Op::Loop, Op::LoopResult, Op::Call, Op::Cached};
 constexpr double rounding = 1e-9; // of the bound on a weight
 
 // Two numbers, and which way b moves as a does.
@@ -111,7 +111,7 @@ class Moves {
         }
         const Op op = graph_[id].op;
         const bool still = std::ranges::all_of(args, [](const Rate &x) { return x.by == 0; });
-        if (still) return opaque[op] ? Found() : Found(rate(0));
+        if (still) return opaque_to_means[op] ? Found() : Found(rate(0));
         if (op == Op::Neg) return rate(-args[0].by, args[0].held, args[0].power);
         if (op == Op::Add) return sum(args[0], args[1], 1);
         if (op == Op::Sub) return sum(args[0], args[1], -1);
@@ -176,7 +176,7 @@ std::vector<MovedPair> pairs_in(const Graph &graph, NodeId root) {
                 if (both && std::ranges::find(out, pair) == out.end()) out.push_back(pair);
             if (out.size() >= max_pairs) return out;
         }
-        if (opaque[op]) continue;
+        if (opaque_to_means[op]) continue;
         for (NodeId arg : graph.args(id))
             if (seen.insert(arg).second) level.push_back(arg);
     }
@@ -229,7 +229,8 @@ std::vector<NodeId> divisors_in(const Graph &graph, NodeId root) {
     while (!todo.empty() && out.size() < most && seen.size() < max_nodes_of_mean) {
         const NodeId id = todo.back();
         todo.pop_back();
-        if (!graph.reads(id).point || opaque[graph[id].op] || !seen.insert(id).second) continue;
+        if (!graph.reads(id).point || opaque_to_means[graph[id].op] || !seen.insert(id).second)
+            continue;
         todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
         if (graph[id].op != Op::Div) continue;
         const NodeId by = graph.arg(id, 1);
@@ -280,7 +281,7 @@ struct Weights {
 std::optional<Weights> weights_of(Flattening &context, NodeId scalar, const MovedPair &moved,
                                   double by) {
     Halves halves{context, scalar, moved, by};
-    for (const double reach : reaches) {
+    for (const double reach : sizes_of_both) {
         const double most = halves.steepest_for(reach);
         if (most <= max_steepness) return Weights{most <= 1 + rounding ? 0 : (most - 1) / 2, reach};
     }

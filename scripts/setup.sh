@@ -7,7 +7,7 @@ libepoxy-dev libegl-dev libyaml-dev glslang-dev libglm-dev nlohmann-json3-dev li
 pybind11-dev python3-dev"
 # To test: a display of our own for the viewer, a second compiler for the fuzzers, a newer one with its own standard library
 # for .ci/run (libc++ 14 lacks the algorithms on ranges), a browser and what drives it; programs that judge meshes and volumes.
-test_packages="xvfb xauth xdotool clang clang-16 libc++-16-dev libc++abi-16-dev python3-numpy python3-pytest chromium nodejs
+test_packages="xvfb xauth xdotool clang lld clang-16 libc++-16-dev libc++abi-16-dev python3-numpy python3-pytest chromium nodejs
 admesh libopenvdb-tools"
 
 say() { printf '%s\n' "fathom: $*" >&2; }
