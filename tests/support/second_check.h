@@ -46,17 +46,19 @@ inline Span grown(double lo, double hi, double units = 1) {
 }
 inline Span both(Span a, Span b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
 inline Span operator-(Span a) { return {-a.hi, -a.lo}; }
-inline Span operator+(Span a, Span b) { return grown(a.lo + b.lo, a.hi + b.hi); }
+inline Span operator+(Span a, Span b) {
+    if (a.lo == 0 && a.hi == 0) return b; // most entries of a gradient
+    if (b.lo == 0 && b.hi == 0) return a;
+    return grown(a.lo + b.lo, a.hi + b.hi);
+}
 inline Span operator-(Span a, Span b) { return a + -b; }
 inline Span operator*(Span a, Span b) {
     if ((a.lo == 0 && a.hi == 0) || (b.lo == 0 && b.hi == 0)) return {};
-    double lo = endless, hi = -endless;
-    for (const double x : {a.lo, a.hi})
-        for (const double y : {b.lo, b.hi}) {
-            const double product = x == 0 || y == 0 ? 0 : x * y;
-            lo = std::min(lo, product), hi = std::max(hi, product);
-        }
-    return grown(lo, hi);
+    const auto product = [](double x, double y) { return x == 0 || y == 0 ? 0 : x * y; };
+    const double p = product(a.lo, b.lo), q = product(a.lo, b.hi), r = product(a.hi, b.lo),
+                 s = product(a.hi, b.hi);
+    return grown(std::min(std::min(p, q), std::min(r, s)),
+                 std::max(std::max(p, q), std::max(r, s)));
 }
 inline Span operator/(Span a, Span b) {
     if (b.holds(0)) return anything;
