@@ -4,6 +4,7 @@
 #include "api/mesh_advice.h"
 #include "mesh/certify.h"
 #include "mesh/clearance.h"
+#include "mesh/measure_flat.h"
 
 #include <cmath>
 
@@ -64,7 +65,62 @@ Measures measured(const Scene &scene, const MeshOptions &options) {
     return result;
 }
 
+FlatMeasures measured_flat(const Scene &scene, const MeshOptions &options) {
+    using fathom::mesh::Failure;
+    const double thickness = scene.impl().origin->options.flat_thickness;
+    if (!(thickness > 0))
+        return without<FlatMeasures>({MeshStatus::BadOptions,
+                                      "the scene is of solids: a drawing is compiled by "
+                                      "CompileOptions::flat_thickness"});
+    fathom::mesh::Settings settings = settings_of(options);
+    if (settings.bounds) settings.bounds->lo[2] = -thickness, settings.bounds->hi[2] = thickness;
+    ir::Box box;
+    if (Refusal why = refusal_of(fathom::mesh::box_of(ir_of(scene), settings, box)))
+        return without<FlatMeasures>(std::move(why));
+    const fathom::mesh::Cut cut(ir_of(scene), settings, box);
+    const fathom::mesh::Section drawn = fathom::mesh::section(cut, 2, 0);
+    if (Refusal why = refusal_of(drawn.failure, drawn.place))
+        return without<FlatMeasures>(std::move(why));
+    if (drawn.contours.empty())
+        return without<FlatMeasures>(
+            refusal_of(drawn.area.hi > 0 ? Failure::Unseen : Failure::Empty));
+    fathom::mesh::Progress progress;
+    progress.report = options.progress;
+    const fathom::mesh::FlatMeasures found =
+        fathom::mesh::measure_flat(cut, thickness / 4, threads_of(settings), progress);
+    if (progress.cancelled) return without<FlatMeasures>(refusal_of(Failure::Cancelled));
+    if (Refusal why = refusal_of(found.failure)) return without<FlatMeasures>(std::move(why));
+    FlatMeasures result;
+    result.area = enclosure_of(found.area);
+    result.perimeter = enclosure_of(found.perimeter);
+    result.open_places = found.open_places;
+    result.open_place = found.open_place;
+    const fathom::mesh::ContourSums sums = fathom::mesh::sums_of(drawn.contours);
+    for (std::size_t i = 0; i < 2; ++i) {
+        result.center[i] = enclosure_of(found.center[i]);
+        result.least[i] = enclosure_of(found.least[i]);
+        result.greatest[i] = enclosure_of(found.greatest[i]);
+        result.contours_least[i] = sums.box.lo[i];
+        result.contours_greatest[i] = sums.box.hi[i];
+    }
+    result.contours_area = sums.area;
+    result.contours_perimeter = sums.perimeter;
+    result.contours_center = sums.center;
+    result.outlines = sums.outlines;
+    result.holes = sums.holes;
+    result.rests_on = rests_on(found.used_bound);
+    return result;
+}
+
 } // namespace
+
+FlatMeasures measure_flat(const Scene &scene, const MeshOptions &options) noexcept {
+    if (Refusal why = refusal_of(scene, options)) return without<FlatMeasures>(std::move(why));
+    return guarded([&] { return measured_flat(scene, options); },
+                   [](const Diagnostic &why) {
+                       return without<FlatMeasures>({MeshStatus::TooLarge, why.message});
+                   });
+}
 
 Measures measure(const Scene &scene, const MeshOptions &options) noexcept {
     if (Refusal why = refusal_of(scene, options)) return without<Measures>(std::move(why));

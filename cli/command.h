@@ -132,6 +132,7 @@ struct SolidArguments {
     bool several = false; // it is one of several scenes: documents name it
     bool json = false;    // a document on standard output, also where there is none to make
     bool flat = false;    // its flat shapes, as solids about z = 0
+    bool maybe = false;   // `flat` where it has nothing else
     std::string part;     // of the scene, alone; empty: all of it
     double tolerance = 0; // the side of the cells; 0: by resolution
     int resolution = 128; // cells along the longest side of the solid's box

@@ -1,4 +1,5 @@
-// fathom measure: what a solid measures, as numbers of a mesh and as proved enclosures.
+// fathom measure: what a solid or a drawing measures, as numbers of a mesh or of contours and as proved
+// enclosures.
 #include "base/text.h"
 #include "cli/interrupt.h"
 #include "cli/solid.h"
@@ -43,6 +44,21 @@ v1::Enclosure times(const v1::Enclosure &e, double factor) {
     return {e.lo * factor * (1 - 1e-15), e.hi * factor * (1 + 1e-15)};
 }
 
+// What is known along an axis: of the box, and of the centre.
+struct Along {
+    double lo, hi, center;
+    v1::Enclosure least, greatest, middle;
+};
+void add_axis(char axis, const std::string &length, const Along &of, std::vector<Row> &rows) {
+    const double lo = best(of.lo, of.least), hi = best(of.hi, of.greatest);
+    rows.push_back(
+        {fmt::format("size {}", axis), length, hi - lo,
+         v1::Enclosure{std::max(0.0, of.greatest.lo - of.least.hi), of.greatest.hi - of.least.lo}});
+    rows.push_back({fmt::format("from {}", axis), length, lo, of.least});
+    rows.push_back({fmt::format("to {}", axis), length, hi, of.greatest});
+    rows.push_back({fmt::format("centre {}", axis), length, best(of.center, of.middle), of.middle});
+}
+
 std::vector<Row> rows_of(const v1::Measures &of, const MeasureCommand &command) {
     const std::string length = unit_of(command, 1);
     const double volume = best(of.mesh_volume, of.volume);
@@ -52,18 +68,30 @@ std::vector<Row> rows_of(const v1::Measures &of, const MeasureCommand &command) 
         const double one = mass_of_one(command);
         rows.push_back({"mass", length.empty() ? "" : "g", one * volume, times(of.volume, one)});
     }
-    for (std::size_t i = 0; i < 3; ++i) {
-        const char axis = "xyz"[i];
-        const double lo = best(of.mesh_box.lo[i], of.least[i]),
-                     hi = best(of.mesh_box.hi[i], of.greatest[i]);
-        rows.push_back({fmt::format("size {}", axis), length, hi - lo,
-                        v1::Enclosure{std::max(0.0, of.greatest[i].lo - of.least[i].hi),
-                                      of.greatest[i].hi - of.least[i].lo}});
-        rows.push_back({fmt::format("from {}", axis), length, lo, of.least[i]});
-        rows.push_back({fmt::format("to {}", axis), length, hi, of.greatest[i]});
-        rows.push_back({fmt::format("centre {}", axis), length,
-                        best(of.mesh_center[i], of.center[i]), of.center[i]});
-    }
+    for (std::size_t i = 0; i < 3; ++i)
+        add_axis(
+            "xyz" [i], length,
+            {
+                of.mesh_box.lo[i], of.mesh_box.hi[i], of.mesh_center[i], of.least[i],
+                    of.greatest[i], of.center[i]
+            },
+            rows);
+    return rows;
+}
+
+std::vector<Row> rows_of(const v1::FlatMeasures &of, const MeasureCommand &command) {
+    const std::string length = unit_of(command, 1);
+    std::vector<Row> rows{
+        {"area", unit_of(command, 2), best(of.contours_area, of.area), of.area},
+        {"perimeter", length, best(of.contours_perimeter, of.perimeter), of.perimeter}};
+    for (std::size_t i = 0; i < 2; ++i)
+        add_axis(
+            "xy" [i], length,
+            {
+                of.contours_least[i], of.contours_greatest[i], of.contours_center[i], of.least[i],
+                    of.greatest[i], of.center[i]
+            },
+            rows);
     return rows;
 }
 
@@ -133,6 +161,26 @@ Json json_of(const v1::Measures &of, const MeasureCommand &command) {
     return json;
 }
 
+Json json_of(const v1::FlatMeasures &of, const MeasureCommand &) {
+    Json json;
+    json["area"] = json_of(of.contours_area, of.area);
+    json["perimeter"] = json_of(of.contours_perimeter, of.perimeter);
+    if (of.open_places > 0) {
+        json["perimeter"]["open_places"] = of.open_places;
+        json["perimeter"]["open_place"] = of.open_place;
+    }
+    for (const char *name : {"center", "from", "to"}) json[name] = Json::array();
+    for (std::size_t i = 0; i < 2; ++i) {
+        json["center"].push_back(json_of(of.contours_center[i], of.center[i]));
+        json["from"].push_back(json_of(of.contours_least[i], of.least[i]));
+        json["to"].push_back(json_of(of.contours_greatest[i], of.greatest[i]));
+    }
+    json["outlines"] = of.outlines;
+    json["holes"] = of.holes;
+    json["rests_on"] = of.rests_on;
+    return json;
+}
+
 // What is measured one after the other, on one bar.
 class Measuring {
   public:
@@ -157,10 +205,39 @@ struct Between {
     v1::Clearance of;
 };
 
-double size_of(const v1::Measures &of) {
+// What is measured, and what there is to say of it.
+struct Subject {
+    std::string name;
+    int line = 0; // of a part; 0: it is the whole
+    v1::Scene scene;
+    bool flat = false, empty = false;
+    v1::MeshStatus status = v1::MeshStatus::Done;
+    std::string message, open; // `open`: of places where nothing bounds an area or a perimeter
+    std::vector<Row> rows;
+    Json json;
+};
+
+template <class Measures>
+void fill(const Measures &of, const MeasureCommand &command, const char *what, Subject &subject) {
+    subject.status = of.status;
+    subject.message = of.message;
+    subject.empty = subject.line > 0 && of.status == v1::MeshStatus::Empty;
+    if (!of) return;
+    subject.rows = rows_of(of, command);
+    subject.json = json_of(of, command);
+    if (of.open_places > 0)
+        subject.open = fmt::format("  (the {} has no upper end: in {} of the smallest boxes it is "
+                                   "not known how the {} runs, near [{:.4g}] for instance)\n",
+                                   what, of.open_places, subject.flat ? "border" : "surface",
+                                   fmt::join(of.open_place, ", "));
+}
+
+// The farthest coordinate of its box.
+double size_of(const std::vector<Row> &rows) {
     double size = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-        size = std::max<double>({size, std::fabs(of.mesh_box.lo[i]), std::fabs(of.mesh_box.hi[i])});
+    for (const Row &row : rows)
+        if (row.name.starts_with("from ") || row.name.starts_with("to "))
+            size = std::max(size, std::fabs(row.value));
     return size;
 }
 
@@ -208,25 +285,50 @@ Json json_of(const Between &between) {
     return json;
 }
 
+void put_json(const MeasureCommand &command, const std::vector<Subject> &subjects,
+              const std::vector<Between> &clearances, Terminal &terminal) {
+    Json json = subjects[0].json;
+    json["unit"] = command.solid.units.empty() ? Json() : Json(command.solid.units);
+    if (command.parts) json["parts"] = Json::array();
+    if (command.parts) json["empty"] = Json::array();
+    for (std::size_t k = 1; k < subjects.size(); ++k) {
+        if (subjects[k].empty) {
+            json["empty"].push_back(subjects[k].name);
+            continue;
+        }
+        Json part{{"name", subjects[k].name}, {"line", subjects[k].line}};
+        part.update(subjects[k].json);
+        json["parts"].push_back(std::move(part));
+    }
+    if (!clearances.empty()) json["clearances"] = Json::array();
+    for (const Between &between : clearances) json["clearances"].push_back(json_of(between));
+    terminal.put(json.dump() + "\n");
+}
+
 } // namespace
 
 Exit run(const MeasureCommand &command, Terminal &terminal) {
     const std::string &file = command.solid.scene.file;
-    const Solid solid = open_solid(command.solid, terminal);
+    SolidArguments arguments = command.solid;
+    arguments.maybe = true;
+    const Solid solid = open_solid(arguments, terminal);
     if (!solid.scene) return solid.exit;
-    struct Subject {
-        std::string name;
-        int line = 0;
-        v1::Scene scene;
-        v1::Measures of;
+    if (solid.flat && command.density) {
+        terminal.say(fmt::format("fathom: {}: --density is of solids: this is a drawing, which has "
+                                 "no volume; `.extrude(…)` gives it a thickness",
+                                 file));
+        return usage_error;
+    }
+    const auto subject_of = [&](const std::string &name, int line, v1::Scene scene) {
+        return Subject{name, line, std::move(scene), solid.flat, false, {}, "", "", {}, {}};
     };
     std::vector<Subject> subjects{
-        {command.solid.part.empty() ? file : command.solid.part, 0, *solid.scene, {}}};
+        subject_of(command.solid.part.empty() ? file : command.solid.part, 0, *solid.scene)};
     if (command.parts)
         for (const v1::Part &part : v1::parts_of(*solid.scene)) {
             std::optional<v1::Scene> scene = part_named(*solid.scene, part.name, terminal);
             if (!scene) return device_error;
-            subjects.push_back({part.name, part.at.line, std::move(*scene), {}});
+            subjects.push_back(subject_of(part.name, part.at.line, std::move(*scene)));
         }
     std::vector<std::array<v1::Scene, 2>> pairs;
     for (const auto &[a, b] : command.between) {
@@ -246,18 +348,21 @@ Exit run(const MeasureCommand &command, Terminal &terminal) {
     for (Subject &subject : subjects) {
         v1::MeshOptions options = options_of(command.solid);
         options.progress = work.next();
-        subject.of = v1::measure(subject.scene, options);
+        if (solid.flat)
+            fill(v1::measure_flat(subject.scene, options), command, "perimeter", subject);
+        else
+            fill(v1::measure(subject.scene, options), command, "area", subject);
         heed_interrupts();
-        if (subject.line > 0 && subject.of.status == v1::MeshStatus::Empty) continue;
-        if (!subject.of) {
+        if (subject.empty) continue;
+        if (subject.status != v1::MeshStatus::Done) {
             terminal.finish_progress();
             return say_refusal(command.solid, file, fmt::format("measures of `{}`", subject.name),
-                               subject.of.status, subject.of.message, terminal);
+                               subject.status, subject.message, terminal);
         }
-        if (subject.of.message.empty()) continue;
+        if (subject.message.empty()) continue;
         terminal.finish_progress();
         terminal.say(fmt::format("{}: what stands beside the enclosures is of a mesh: {}",
-                                 subject.name, subject.of.message));
+                                 subject.name, subject.message));
     }
     std::vector<Between> clearances;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -274,37 +379,18 @@ Exit run(const MeasureCommand &command, Terminal &terminal) {
     terminal.finish_progress();
 
     if (command.solid.json) {
-        Json json = json_of(subjects[0].of, command);
-        json["unit"] = command.solid.units.empty() ? Json() : Json(command.solid.units);
-        if (command.parts) json["parts"] = Json::array();
-        if (command.parts) json["empty"] = Json::array();
-        for (std::size_t k = 1; k < subjects.size(); ++k) {
-            if (!subjects[k].of) {
-                json["empty"].push_back(subjects[k].name);
-                continue;
-            }
-            Json part{{"name", subjects[k].name}, {"line", subjects[k].line}};
-            part.update(json_of(subjects[k].of, command));
-            json["parts"].push_back(std::move(part));
-        }
-        if (!clearances.empty()) json["clearances"] = Json::array();
-        for (const Between &between : clearances) json["clearances"].push_back(json_of(between));
-        terminal.put(json.dump() + "\n");
+        put_json(command, subjects, clearances, terminal);
         return done;
     }
     for (const Subject &subject : subjects) {
         const std::string title = subject.line > 0
                                       ? fmt::format("{}, line {}", subject.name, subject.line)
                                       : subject.name;
-        if (!subject.of)
+        if (subject.empty)
             terminal.put(title + "\n  holds no point\n");
         else
-            put_table(title, rows_of(subject.of, command), size_of(subject.of), terminal);
-        if (subject.of && subject.of.open_places > 0)
-            terminal.put(
-                fmt::format("  (the area has no upper end: in {} of the smallest boxes it is "
-                            "not known how the surface runs, near [{:.4g}] for instance)\n",
-                            subject.of.open_places, fmt::join(subject.of.open_place, ", ")));
+            put_table(title, subject.rows, size_of(subject.rows), terminal);
+        terminal.put(subject.open);
     }
     for (const Between &between : clearances) put_clearance(between, command, terminal);
     return done;

@@ -47,6 +47,14 @@ v1::CompileResult compiled(const SolidArguments &arguments) {
     return v1::compile_file(arguments.scene.file, options);
 }
 
+// Whether nothing is wrong with a scene but that it is a drawing.
+bool is_drawing(const v1::CompileResult &result) {
+    const auto is_error = [](const v1::Diagnostic &d) {
+        return d.severity == v1::Severity::Error && d.code != "flat-shape";
+    };
+    return !result && std::ranges::none_of(result.diagnostics, is_error);
+}
+
 } // namespace
 
 const UnitRow *unit_named(std::string_view name) {
@@ -79,12 +87,25 @@ std::optional<v1::Scene> part_named(const v1::Scene &scene, const std::string &n
 Solid open_solid(const SolidArguments &arguments, Terminal &terminal, bool again) {
     Solid solid;
     v1::CompileResult result = compiled(arguments);
+    solid.flat = arguments.flat;
+    if (arguments.maybe && is_drawing(result) && arguments.scene.file != "-") {
+        SolidArguments drawing = arguments;
+        drawing.flat = true;
+        if (v1::CompileResult flat = compiled(drawing)) {
+            result = std::move(flat);
+            solid.flat = true;
+        }
+    }
     solid.files = result.files;
     if (arguments.bounds) // what is cut off here has an end, and no camera looks at it
         std::erase_if(result.diagnostics,
                       [](const v1::Diagnostic &d) { return d.code == "nothing-framed"; });
     solid.exit = again && result ? done : report(result, terminal);
     if (arguments.json && !result) terminal.put(v1::verdict_json(result));
+    if (arguments.maybe && is_drawing(result) && arguments.scene.file == "-")
+        terminal.say(
+            "fathom: flat shapes are read twice, and standard input can be read once: name "
+            "the scene");
     if (solid.exit != done) return solid;
     solid.exit = usage_error; // unless all is well
     if (!in_proved_time(result.scene->facts(), arguments.time, arguments.time, terminal))

@@ -23,6 +23,7 @@ struct Solid {
     Exit exit = done;
     std::optional<v1::Scene> scene;
     std::vector<std::filesystem::path> files; // that it was read from
+    bool flat = false;                        // it is a drawing
 };
 // `again`: what is no error was said before.
 Solid open_solid(const SolidArguments &arguments, Terminal &terminal, bool again = false);

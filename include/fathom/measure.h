@@ -54,6 +54,31 @@ struct Measures {
  *  are not read. */
 FATHOM_API Measures measure(const Scene &scene, const MeshOptions &options = {}) noexcept;
 
+/** Of a drawing: a scene of flat shapes that was compiled with `CompileOptions::flat_thickness`. */
+struct FlatMeasures {
+    MeshStatus status = MeshStatus::Done;
+    std::string message; /**< why there is none */
+    Enclosure area;
+    /** The length of its border, holes and all; its upper end and `open_places` as Measures::area has
+     *  them. */
+    Enclosure perimeter;
+    std::size_t open_places = 0;
+    std::array<double, 2> open_place{};
+    std::array<Enclosure, 2> center;
+    std::array<Enclosure, 2> least, greatest; /**< the ends of its box */
+    /** Numbers of contours that are drawn of it, of which nothing is proved. */
+    double contours_area = 0, contours_perimeter = 0;
+    std::array<double, 2> contours_center{};
+    std::array<double, 2> contours_least{}, contours_greatest{};
+    std::size_t outlines = 0, holes = 0; /**< the contours, by which side of them is filled */
+    std::vector<std::string> rests_on;   /**< as MeshCertificate::rests_on */
+    explicit operator bool() const { return status == MeshStatus::Done; }
+};
+
+/** `resolution` and `tolerance` are those of squares, as `slice` has them. BadOptions where the scene
+ *  is not a drawing. */
+FATHOM_API FlatMeasures measure_flat(const Scene &scene, const MeshOptions &options = {}) noexcept;
+
 /** How far two solids are apart. */
 struct Clearance {
     MeshStatus status = MeshStatus::Done;

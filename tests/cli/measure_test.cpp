@@ -68,6 +68,46 @@ TEST_CASE("parts are measured by their names, and how far they are apart") {
     CHECK((mesh.exit == 0 && mesh.out != all.out));
 }
 
+TEST_CASE("a drawing's area, border, box and centre are measured") {
+    const ScratchFolder folder;
+    folder.write("plate.sdf", "param r = 4 in 1..5\n"
+                              "rectangle([40, 20]) - circle(r).translate(x: 10)\n"
+                              "circle(3).translate(x: 40)\n");
+    const std::string measure = "fathom measure plate.sdf --resolution 64 ";
+    const Result made = shell(folder, measure + "-D r=5 --json --units mm --parts "
+                                                "--between rectangle,circle");
+    INFO(made.err);
+    REQUIRE(made.exit == 0);
+    const double pi = 3.14159265358979;
+    const Json json = Json::parse(made.out);
+    CHECK(holds(json["area"], 800 - 25 * pi + 9 * pi));
+    CHECK(holds(json["perimeter"], 120 + 10 * pi + 6 * pi));
+    CHECK(holds(json["perimeter"], json["perimeter"]["value"].get<double>()));
+    CHECK(json["perimeter"]["most"].get<double>() < 172);
+    CHECK(json["area"]["most"].get<double>() < 750);
+    CHECK(holds(json["center"][0], (-250 * pi + 360 * pi) / (800 - 16 * pi)));
+    CHECK(json["center"].size() == 2);
+    CHECK((holds(json["from"][0], -20) && holds(json["to"][0], 43) && holds(json["to"][1], 10)));
+    CHECK((json["outlines"] == 2 && json["holes"] == 1 && json["unit"] == "mm"));
+    CHECK(holds(json["parts"][1]["area"], 9 * pi));
+    CHECK(holds(json["clearances"][0], 17));
+    const Result table = shell(folder, measure);
+    for (const char *part : {"area  ", "perimeter  ", "size y  ", "centre x  "})
+        CHECK(contains(table.out, part));
+    CHECK_FALSE((contains(table.out, "volume") || contains(table.out, "size z")));
+    const Json cut = Json::parse(shell(folder, measure + "--json --bounds=-50,-50,-1,0,50,1").out);
+    CHECK(holds(cut["area"], 400));
+    const Result mass = shell(folder, measure + "--density 2");
+    CHECK((mass.exit == 2 && contains(mass.err, "--density is of solids")));
+    const Result piped = shell(folder, "cat plate.sdf | fathom measure -");
+    CHECK((piped.exit == 1 && contains(piped.err, "name the scene")));
+    folder.write("mixed.sdf", "circle(1)\nsphere(1)\n");
+    const Result mixed = shell(folder, "fathom measure mixed.sdf");
+    CHECK((mixed.exit == 1 && contains(mixed.err, "flat-shape")));
+    folder.write("none.sdf", "circle(1) & circle(1).translate(x: 5)\n");
+    CHECK(contains(shell(folder, "fathom measure none.sdf").err, "empty"));
+}
+
 TEST_CASE("a printed number lies in what is proved of it") {
     ScratchFolder folder;
     folder.write("needle.sdf", "cone(0.05, 2)\n"); // its tip is lost by coarse cells

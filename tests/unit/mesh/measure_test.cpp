@@ -1,6 +1,7 @@
 // Measures: what is known of solids lies in the enclosures, and clearances are those of geometry.
 #include "driver/compile.h"
 #include "mesh/clearance.h"
+#include "mesh/measure_flat.h"
 #include "mesh/slopes.h"
 #include "tests/support/effort.h"
 
@@ -34,6 +35,19 @@ mesh::Settings as_fine_as(int resolution) {
     mesh::Settings settings;
     settings.resolution = resolution;
     return settings;
+}
+
+mesh::FlatMeasures measured_flat(const std::string &text, int resolution) {
+    driver::CompileOptions options;
+    options.flat_thickness = 4;
+    driver::Compilation c = driver::compile_text("drawing.sdf", text, "", options);
+    INFO(text);
+    REQUIRE(c.good());
+    const mesh::Settings settings = as_fine_as(resolution);
+    ir::Box box;
+    REQUIRE(mesh::box_of(c.scene, settings, box) == mesh::Failure::None);
+    mesh::Progress progress;
+    return mesh::measure_flat(mesh::Cut(c.scene, settings, box), 1, 2, progress, 6e7);
 }
 
 bool holds(const mesh::Enclosure &e, double value) { return e.lo <= value && value <= e.hi; }
@@ -277,5 +291,40 @@ TEST_CASE("what planes enclose holds the volume, and is narrow") {
         if (2 * radius > std::min(number(a), number(c))) continue;
         CHECK(holds(measured(bored, as_fine_as(40)).volume,
                     volume - pi * radius * radius * number(b)));
+    }
+}
+
+TEST_CASE("the area and the border of drawings that are known") {
+    struct Known {
+        const char *text;
+        double area, border;
+        std::array<double, 2> center;
+    };
+    const double pi = std::numbers::pi;
+    const Known known[] = {
+        {"circle(2)", 4 * pi, 4 * pi, {0, 0}},
+        {"circle(2).translate([30, -50])", 4 * pi, 4 * pi, {30, -50}},
+        {"rectangle([3, 2])", 6, 10, {0, 0}},
+        {"rectangle([1, 1]).translate(x: 0.5)\nrectangle([1, 2]).translate(x: 3)",
+         3,
+         10,
+         {(0.5 + 6) / 3, 0}},
+        {"ring(2, 1)", 3 * pi, 6 * pi, {0, 0}},
+        {"circle(1).scale([2, 1])", 2 * pi, 9.688448220547675, {0, 0}},
+        {"circle(1) - circle(1).translate(x: 1)",
+         pi / 3 + std::sqrt(3.0) / 2,
+         2 * pi,
+         {-0.3210210538742287, 0}},
+    };
+    for (const Known &k : known) {
+        INFO(k.text);
+        const mesh::FlatMeasures of = measured_flat(k.text, 64);
+        INFO(of.perimeter.lo << " to " << of.perimeter.hi << " at " << of.open_places);
+        CHECK(holds(of.area, k.area));
+        CHECK(of.area.hi - of.area.lo < 1e-3 * k.area);
+        CHECK(holds(of.perimeter, k.border));
+        CHECK(of.perimeter.hi - of.perimeter.lo < 0.02 * k.border);
+        CHECK(of.open_places == 0);
+        for (std::size_t i = 0; i < 2; ++i) CHECK(holds(of.center[i], k.center[i]));
     }
 }
