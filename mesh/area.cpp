@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace fathom::mesh {
 namespace {
@@ -71,31 +72,62 @@ Enclosure share_of(const Point &lo, const Point &hi, const Linear &linear) {
             share_below(linear.value - off, linear.slope, half)[1]};
 }
 
+namespace {
+
+constexpr double slope_rounding = 1e-9;
+
+// How fast the number rises along its mean slope, at least; and that direction.
+double least_rise(const Linear &linear, Real3 &along) {
+    const double length = std::hypot(linear.slope[0], linear.slope[1], linear.slope[2]);
+    if (!(length > 0)) return 0;
+    double least = length;
+    for (std::size_t i = 0; i < 3; ++i) {
+        along[i] = linear.slope[i] / length;
+        least -= std::fabs(along[i]) * linear.spread[i];
+    }
+    return least - slope_rounding * length;
+}
+
+} // namespace
+
+std::optional<Slant> slant_of(const Linear &linear) {
+    Slant slant;
+    const double least = least_rise(linear, slant.along);
+    if (!(least > 0)) return std::nullopt;
+    double across = 0; // squares
+    for (const double spread : linear.spread) across += spread * spread;
+    // A gradient is `least` along the direction, at least, and `across` beside it, at most.
+    slant.most = std::sqrt(1 + across / (least * least));
+    return slant;
+}
+
 std::optional<Slant> slant_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                               const Point &lo, const Point &hi, const Linear &linear) {
-    constexpr double well = 1.002, rounding = 1e-9;
+    constexpr double well = 1.002;
     const double length = std::hypot(linear.slope[0], linear.slope[1], linear.slope[2]);
     if (!(length > 0)) return std::nullopt;
-    Slant slant;
-    double least = length, across = 0, most = 0; // along the direction, and of squares
-    for (std::size_t i = 0; i < 3; ++i) {
-        slant.along[i] = linear.slope[i] / length;
-        least -= std::fabs(slant.along[i]) * linear.spread[i];
-        across += linear.spread[i] * linear.spread[i];
-        most += std::pow(std::fabs(linear.slope[i]) + linear.spread[i], 2);
-    }
-    least -= rounding * length;
-    // A gradient is `least` along the direction, at least, and `across` beside it, at most.
-    slant.most = least > 0 ? std::sqrt(1 + across / (least * least)) : 0;
-    if (least > 0 && slant.most < well) return slant;
+    std::optional<Slant> slant = slant_of(linear);
+    if (slant && slant->most < well) return slant;
     // Where gradients of several sorts meet the box of all of them holds too many others.
-    const std::optional<double> rise =
-        least_slope_along(evaluator, tape, boxes, lo, hi, slant.along);
-    if (rise && *rise > rounding * length) {
-        const double ratio = std::max(std::sqrt(most) / *rise, 1.0);
-        slant.most = least > 0 ? std::min(slant.most, ratio) : ratio;
-    }
-    return slant.most > 0 ? std::optional(slant) : std::nullopt;
+    Real3 along{};
+    least_rise(linear, along);
+    double most = 0; // squares
+    for (std::size_t i = 0; i < 3; ++i)
+        most += std::pow(std::fabs(linear.slope[i]) + linear.spread[i], 2);
+    const std::optional<double> rise = least_slope_along(evaluator, tape, boxes, lo, hi, along);
+    if (!rise || !(*rise > slope_rounding * length)) return slant;
+    const double ratio = std::max(std::sqrt(most) / *rise, 1.0);
+    if (!slant) return Slant{along, ratio};
+    slant->most = std::min(slant->most, ratio);
+    return slant;
+}
+
+Enclosure area_of_sheet(const Point &lo, const Point &hi, const Linear &sheet) {
+    const std::optional<Slant> slant = slant_of(sheet);
+    if (!slant) return {0, std::numeric_limits<double>::infinity()};
+    Graph graph{lo, hi, {}};
+    graph.add_open(lo, hi, sheet);
+    return graph.area(*slant);
 }
 
 void Graph::add_inside(const Point &from, const Point &to) {

@@ -19,7 +19,9 @@ struct Slant {
     Real3 along{};
     double most = 1;
 };
-// None is known. `linear`: of the same box.
+// Of a number by what its slopes lie within; none where it may not rise.
+std::optional<Slant> slant_of(const Linear &linear);
+// Of the field. None is known. `linear`: of the same box.
 std::optional<Slant> slant_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                               const Point &lo, const Point &hi, const Linear &linear);
 
@@ -34,6 +36,9 @@ struct Graph {
     // Of the surface in the box.
     Enclosure area(const Slant &slant) const;
 };
+
+// … of the place in a box where such a number is 0.
+Enclosure area_of_sheet(const Point &lo, const Point &hi, const Linear &sheet);
 
 // The share of a box, by half its sides, in which value + slope · p <= 0, p from its middle: of the
 // simplices that a plane cuts off at its corners, added and taken away. Between two numbers, for what

@@ -16,11 +16,12 @@ constexpr double inward = 1 - 1e-6;    // what sums of doubles may take
 constexpr std::size_t most_levels = 9; // that are chosen
 constexpr double along_gradient = 0.9; // the cosine from where a number may vary as the field does
 
-// Slopes by slot: the registers of a tape, and what all points share.
+// What is known of numbers by slot: the registers of a tape, and what all points share.
 struct Slopes {
     const cpu::PruneProgram &parts;
     const cpu::Shortener &ranges;
     std::vector<Varying> by_slot;
+    std::vector<Zeros> zeros; // by slot; empty: they are not wanted
 
     bool shared(std::uint32_t address) const { return address < parts.program->first_register; }
     std::size_t slot(std::uint32_t address) const {
@@ -35,7 +36,29 @@ struct Slopes {
         found.known = found.known && std::isfinite(found.range.lo) && std::isfinite(found.range.hi);
         return found;
     }
+    Zeros zeros_at(std::uint32_t address) const {
+        if (ranges.lo[address] > 0 || ranges.hi[address] < 0) return {true, {}};
+        return shared(address) ? Zeros{} : zeros[slot(address)];
+    }
 };
+
+// Of the number in a slot, and at the middle of the box.
+Linear linear_of(const Varying &number, Interval middle, const Point &lo, const Point &hi) {
+    const Point at = middle_point(lo, hi);
+    Linear linear{0.5 * (middle.lo + middle.hi),
+                  0.5 * (middle.hi - middle.lo) + 2 * (number.error + 2 * number.beyond),
+                  {},
+                  {}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Interval slope = number.slope[i];
+        const double reach = std::max(double(hi[i]) - at[i], double(at[i]) - lo[i]);
+        linear.slope[i] = 0.5 * (slope.lo + slope.hi);
+        linear.spread[i] = 0.5 * (slope.hi - slope.lo) * (1 + 1e-9) + 1e-9 * size(slope);
+        linear.off += 0.5 * (slope.hi - slope.lo) * reach;
+    }
+    linear.off *= 1 + 1e-9;
+    return linear;
+}
 
 // The axis along which a number changes fastest for sure.
 double least_slope(const Varying &number) {
@@ -147,7 +170,7 @@ namespace {
 Slopes slopes_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                    const Point &lo, const Point &hi,
                    const std::function<void(Register, const Varying &)> &see,
-                   const std::array<double, 3> &along = {}) {
+                   const std::array<double, 3> &along = {}, bool zeros = false) {
     const Field &field = evaluator.field;
     boxes.count = 16; // of which the first is looked at, and the second: its middle
     const Point middle = middle_point(lo, hi);
@@ -157,7 +180,9 @@ Slopes slopes_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes 
             boxes.hi[i][k] = k == 1 ? middle[i] : hi[i];
         }
     cpu::enter_boxes(field.parts, evaluator.ranges, boxes);
-    Slopes slopes{field.parts, evaluator.ranges, std::vector<Varying>(field.parts.slot_count)};
+    Slopes slopes{field.parts, evaluator.ranges, std::vector<Varying>(field.parts.slot_count), {}};
+    if (zeros) slopes.zeros.resize(field.parts.slot_count);
+    std::vector<Zeros> by_id(1);
     std::uint32_t ids = 0; // that are given
     for (std::size_t axis = 0; axis < 3; ++axis) {
         Varying &input = slopes.by_slot[slopes.slot(field.program.params[axis].address)];
@@ -165,6 +190,7 @@ Slopes slopes_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes 
         input.slope[axis] = {1, 1};
         input.slope[3] = {along[axis], along[axis]};
         input.id = ++ids;
+        by_id.emplace_back();
     }
     std::vector<Varying> in;
     const cpu::Selection whole = tape.selection(field.parts);
@@ -187,14 +213,31 @@ Slopes slopes_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes 
                 made = {wave_of(in[0], false), wave_of(in[0], true)};
             else
                 made[0] = through(cpu::kernel_of_variant(step.target), in);
+            for (const Varying &one : in) {
+                made[0].jumps = made[0].jumps || one.jumps;
+                made[0].beyond += one.beyond;
+            }
+            if (waves) made[1].jumps = made[0].jumps, made[1].beyond = made[0].beyond;
+        }
+        std::vector<Operand> of; // the kernel's inputs
+        std::vector<Zeros> their;
+        if (zeros && plain) {
+            their.reserve(in.size());
+            for (std::uint32_t n = part.writes; n < part.operands; ++n) {
+                const std::uint32_t at = operands[n];
+                their.push_back(slopes.zeros_at(at));
+                of.push_back({at, &in[n - part.writes], &their.back()});
+            }
         }
         cpu::Selection here = whole;
         here.steps = whole.steps.subspan(k, 1);
         here.loops = whole.loops.subspan(loops);
         loops += step.kind == cpu::StepKind::Loop;
         cpu::run_steps(field.parts, evaluator.ranges, here);
-        for (std::uint32_t n = 0; n < part.writes; ++n)
+        for (std::uint32_t n = 0; n < part.writes; ++n) {
             slopes.by_slot[field.parts.slots[part.first_slot + n]] = {};
+            if (zeros) slopes.zeros[field.parts.slots[part.first_slot + n]] = {};
+        }
         // One number all over the box, as the copy of a repetition: it does not change.
         const bool runs = step.kind == cpu::StepKind::Run && !step.once;
         for (std::uint32_t n = 0; runs && n < std::min(part.writes, part.operands); ++n)
@@ -203,8 +246,21 @@ Slopes slopes_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes 
                     evaluator.ranges.lo[to] == evaluator.ranges.hi[to];
         for (std::uint32_t n = 0; plain && n < part.writes; ++n) {
             const std::uint32_t to = operands[n];
-            if (!made[n].known || slopes.shared(to)) continue;
-            if (made[n].id == 0) made[n].id = ++ids;
+            if (slopes.shared(to)) continue;
+            if (zeros && !waves) {
+                std::optional<Linear> itself;
+                if (made[n].known && !made[n].jumps)
+                    itself = linear_of(made[n],
+                                       {evaluator.ranges.lo[to + 1], evaluator.ranges.hi[to + 1]},
+                                       lo, hi);
+                slopes.zeros[slopes.slot(to)] =
+                    zeros_of(cpu::kernel_of_variant(step.target), of, itself, by_id);
+            }
+            if (!made[n].known) continue;
+            if (made[n].id == 0) {
+                made[n].id = ++ids;
+                by_id.push_back(zeros ? slopes.zeros_at(to) : Zeros{});
+            }
             slopes.by_slot[slopes.slot(to)] = made[n];
             see({k, to}, made[n]);
         }
@@ -229,11 +285,26 @@ std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, c
     std::vector<Level> levels;
     if (tape.steps.size() > longest_tape) return levels;
     slopes_over(evaluator, tape, boxes, lo, hi, [&](Register where, const Varying &number) {
-        if (const double slope = least_slope(number); slope > 0)
+        if (const double slope = least_slope(number); slope > 0 && !number.jumps)
             levels.push_back(level_of(where, evaluator.ranges, number, slope));
     });
     return levels;
 }
+
+namespace {
+
+// The field, of what was found of a tape's numbers.
+std::optional<Linear> linear_in(const Slopes &slopes, const Evaluator &evaluator, const Point &lo,
+                                const Point &hi) {
+    const std::uint32_t result = evaluator.field.program.results[0].address;
+    const Varying field = slopes.at(result);
+    if (!field.known || (field.jumps && !evaluator.field.proved)) return std::nullopt;
+    const Linear linear = linear_of(
+        field, {evaluator.ranges.lo[result + 1], evaluator.ranges.hi[result + 1]}, lo, hi);
+    return std::isfinite(linear.value + linear.off) ? std::optional(linear) : std::nullopt;
+}
+
+} // namespace
 
 std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &tape,
                                   cpu::Boxes &boxes, const Point &lo, const Point &hi) {
@@ -242,21 +313,75 @@ std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &ta
         return std::nullopt;
     const Slopes slopes =
         slopes_over(evaluator, tape, boxes, lo, hi, [](Register, const Varying &) {});
-    const Varying field = slopes.at(result.address);
-    if (!field.known) return std::nullopt;
-    const double least = evaluator.ranges.lo[result.address + 1],
-                 most = evaluator.ranges.hi[result.address + 1]; // at the middle
-    const Point middle = middle_point(lo, hi);
-    Linear linear{0.5 * (least + most), 0.5 * (most - least) + 2 * field.error, {}, {}};
+    return linear_in(slopes, evaluator, lo, hi);
+}
+
+namespace {
+
+constexpr double of_slopes = 1e-8; // what their rounding may take
+
+// The corners of a box towards which a number falls and rises, where it does along each axis: so what
+// of the box it is below 0 in is in one piece with the first, and what it is above 0 in with the second.
+std::optional<std::array<Point, 2>> ends_of(const Linear &sheet, const Point &lo, const Point &hi) {
+    std::array<Point, 2> ends{};
     for (std::size_t i = 0; i < 3; ++i) {
-        const Interval slope = field.slope[i];
-        const double reach = std::max(double(hi[i]) - middle[i], double(middle[i]) - lo[i]);
-        linear.slope[i] = 0.5 * (slope.lo + slope.hi);
-        linear.spread[i] = 0.5 * (slope.hi - slope.lo) * (1 + 1e-9) + 1e-9 * size(slope);
-        linear.off += 0.5 * (slope.hi - slope.lo) * reach;
+        if (std::fabs(sheet.slope[i]) < (1 - of_slopes) * sheet.spread[i]) return std::nullopt;
+        const bool rises = sheet.slope[i] > 0;
+        ends[0][i] = rises ? lo[i] : hi[i];
+        ends[1][i] = rises ? hi[i] : lo[i];
     }
-    linear.off *= 1 + 1e-9;
-    return std::isfinite(linear.value + linear.off) ? std::optional(linear) : std::nullopt;
+    return ends;
+}
+
+// The sheet, or its negative, by the field's sign at those ends at which the sheet's is sure. At an end
+// where it is not, the sheet is next to 0, no farther than it is off.
+std::optional<Linear> like_field(Evaluator &evaluator, const cpu::ShortTape &tape, Linear sheet,
+                                 const Point &lo, const Point &hi) {
+    const auto ends = ends_of(sheet, lo, hi);
+    if (!ends) return std::nullopt;
+    Points points;
+    for (const Point &end : *ends) points.add(end);
+    std::vector<float> values;
+    values_at(evaluator, tape, points, values);
+    const Point middle = middle_point(lo, hi);
+    for (std::size_t i = 0; i < 3; ++i)
+        sheet.off += 2 * of_slopes * sheet.spread[i] * (double(hi[i]) - lo[i]);
+    bool same = true, opposite = true, sure = false; // of what is sure
+    for (std::size_t k = 0; k < 2; ++k) {
+        double reached = sheet.value;
+        for (std::size_t i = 0; i < 3; ++i)
+            reached += sheet.slope[i] * (double((*ends)[k][i]) - middle[i]);
+        if (std::fabs(reached) <= sheet.off) continue;
+        sure = true;
+        same = same && (reached > 0 ? values[k] > 0 : values[k] < 0);
+        opposite = opposite && (reached > 0 ? values[k] < 0 : values[k] > 0);
+    }
+    if (!sure || !(same || opposite)) return std::nullopt;
+    if (same) return sheet;
+    sheet.value = -sheet.value;
+    for (double &slope : sheet.slope) slope = -slope;
+    return sheet;
+}
+
+} // namespace
+
+Border border_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
+                   const Point &lo, const Point &hi) {
+    const Field &field = evaluator.field;
+    const cpu::Program::Slot &result = field.program.results[0];
+    Border border;
+    if (!field.proved || reaches_cut(field, lo, hi) || result.shared ||
+        tape.steps.size() > longest_tape)
+        return border;
+    const Slopes slopes = slopes_over(
+        evaluator, tape, boxes, lo, hi, [](Register, const Varying &) {}, {}, true);
+    border.linear = linear_in(slopes, evaluator, lo, hi);
+    border.zeros = slopes.zeros_at(result.address);
+    for (const Linear &sheet : border.zeros.sheets)
+        if (!std::isfinite(sheet.value + sheet.off)) border.zeros = {};
+    if (!border.zeros.known || border.zeros.sheets.size() != 1) return border;
+    border.like = like_field(evaluator, tape, border.zeros.sheets[0], lo, hi);
+    return border;
 }
 
 std::optional<double> least_slope_along(Evaluator &evaluator, const cpu::ShortTape &tape,
@@ -267,7 +392,7 @@ std::optional<double> least_slope_along(Evaluator &evaluator, const cpu::ShortTa
     const Slopes slopes = slopes_over(
         evaluator, tape, boxes, lo, hi, [](Register, const Varying &) {}, along);
     const Varying field = slopes.at(result.address);
-    if (!field.known) return std::nullopt;
+    if (!field.known || (field.jumps && !evaluator.field.proved)) return std::nullopt;
     return field.slope[3].lo - 1e-9 * size(field.slope[3]);
 }
 

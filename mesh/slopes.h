@@ -3,6 +3,7 @@
 #pragma once
 
 #include "mesh/field.h"
+#include "mesh/zeros.h"
 
 #include <optional>
 
@@ -38,16 +39,20 @@ Tie tie_of(const Level &level, const Level &other, const Point &lo, const Point 
 std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                              const Point &lo, const Point &hi);
 
-// The field in a box, all but a linear function: there it is no farther from
-// value + slope · (p - middle_point) than `off`, and so are its floats.
-struct Linear {
-    double value = 0, off = 0;
-    std::array<double, 3> slope{};
-    std::array<double, 3> spread{}; // along each axis its slopes are no farther than this from that
-};
-// None where it is not known how the field changes, or it is cut off at bounds. `boxes` is memory.
+// The field in a box. None where it is not known how the field changes, or it is cut off at bounds. `boxes` is memory.
 std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &tape,
                                   cpu::Boxes &boxes, const Point &lo, const Point &hi);
+
+// What the surface in a box is part of. Not known where the field's bound is not proved: it may jump.
+struct Border {
+    Zeros zeros;                  // of the field
+    std::optional<Linear> linear; // as linear_over has it
+    // The one sheet of these, or its negative, if the field is below 0 wherever it is for sure, and
+    // above 0 wherever it is.
+    std::optional<Linear> like;
+};
+Border border_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
+                   const Point &lo, const Point &hi);
 
 // How fast the field rises along a direction at least, all over a box; none where that is not known.
 std::optional<double> least_slope_along(Evaluator &evaluator, const cpu::ShortTape &tape,

@@ -196,6 +196,32 @@ Varying negative(const Varying &a) {
     return made;
 }
 
+// a < b: true or false, as far as `beyond` from where that changes for sure: what both numbers are off
+// over the slope of what they differ by. That is taken to be 1 where it is not known, as where decisions
+// are proved (docs/trusted.md, 2).
+Varying comparison_of(const Varying &a, const Varying &b) {
+    const Varying difference = minus(a, b);
+    double slope = 0;
+    for (const Interval &along : difference.slope) slope = std::max({slope, along.lo, -along.hi});
+    Varying made;
+    made.known = difference.known;
+    made.range = {0, 1};
+    made.beyond = difference.error / (slope > 0 ? slope : 1);
+    return made;
+}
+
+Varying selected(const Varying &choice, const Varying &a, const Varying &b) {
+    if (choice.range.lo > 0) return a;
+    if (choice.range.hi <= 0) return b;
+    Varying made;
+    made.known = choice.known && a.known && b.known;
+    made.range = hull(a.range, b.range);
+    made.error = std::max(a.error, b.error);
+    for (std::size_t i = 0; i < directions; ++i) made.slope[i] = hull(a.slope[i], b.slope[i]);
+    made.jumps = true;
+    return made;
+}
+
 // What kernels give that choose among numbers; others are not known.
 Varying one_of_several(Kernel kernel, const std::vector<Varying> &in) {
     if (kernel == Kernel::MinF) return one_of(in[0], in[1], false);
@@ -277,6 +303,15 @@ Varying through(Kernel kernel, const std::vector<Varying> &in) {
         nothing.known = true;
         for (std::size_t i = 0; i < 3; ++i) parts[i] = one_of(in[i], nothing, true);
         return length_of(parts, 3);
+    }
+    if (kernel == Kernel::LessF || kernel == Kernel::LessEqualF) return comparison_of(in[0], in[1]);
+    if (kernel == Kernel::Not) return in[0];
+    if (kernel == Kernel::SelectF) return selected(in[0], in[1], in[2]);
+    if (kernel == Kernel::And || kernel == Kernel::Or) {
+        Varying made;
+        made.known = in[0].known && in[1].known;
+        made.range = {0, 1};
+        return made;
     }
     return one_of_several(kernel, in);
 }

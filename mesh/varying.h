@@ -38,6 +38,10 @@ struct Varying {
     Interval range;
     std::array<Interval, directions> slope{};
     double error = 0;
+    // Where it may jump its slopes are those beside that; its floats may be the other side's as far
+    // as this from there.
+    bool jumps = false;
+    double beyond = 0;
     std::uint32_t id = 0; // the same of copies of one number; 0: it has none yet
     // It is the greatest of these (of itself where they are not known), and of others that are not
     // above 0 anywhere in the box.

@@ -17,13 +17,33 @@ double diagonal(const Block &part) {
     return std::sqrt(squares);
 }
 
-// The field in a box, all but a linear function.
-std::optional<Linear> linear_in(Splitter &splitter, const cpu::ShortTape &tape, const Block &piece,
-                                const Walk &walk) {
-    std::optional<Linear> linear =
-        linear_over(splitter.evaluator, tape, splitter.boxes, piece.lo, piece.hi);
-    if (linear && walk.flat) linear->slope[2] = linear->spread[2] = 0;
-    return linear;
+// What is known of the field in a box.
+struct Known {
+    std::optional<Linear> linear; // it, or what has its sign there, all but linear
+    std::optional<Slant> slant;   // of that
+    Zeros zeros;                  // where there is no slant
+};
+
+void flatten(Linear &linear) { linear.slope[2] = linear.spread[2] = 0; }
+
+// `fully`: with slant and zeros.
+Known known_in(Splitter &splitter, const cpu::ShortTape &tape, const Block &block, const Walk &walk,
+               bool fully) {
+    Evaluator &evaluator = splitter.evaluator;
+    cpu::Boxes &boxes = splitter.boxes;
+    Known known;
+    if (!splitter.by_zeros) known.linear = linear_over(evaluator, tape, boxes, block.lo, block.hi);
+    if (known.linear && walk.flat) flatten(*known.linear);
+    if (known.linear && fully)
+        known.slant = slant_in(evaluator, tape, boxes, block.lo, block.hi, *known.linear);
+    if (known.slant || (known.linear && !fully)) return known;
+    Border border = border_over(evaluator, tape, boxes, block.lo, block.hi);
+    known.zeros = std::move(border.zeros);
+    known.linear = border.linear ? border.linear : border.like;
+    if (walk.flat && known.linear) flatten(*known.linear);
+    if (walk.flat) std::ranges::for_each(known.zeros.sheets, flatten);
+    if (border.like && !border.linear) known.slant = slant_of(*known.linear);
+    return known;
 }
 
 // What an open box adds: by a plane, if its field is all but linear in it.
@@ -52,7 +72,7 @@ void walk_graph(Splitter &splitter, const cpu::ShortTape &tape, const Block &pie
         open = divided(splitter, tape, open, walk, sums, &graph);
     for (const Block &part : open) {
         const std::optional<Linear> of =
-            levels == 0 ? linear : linear_in(splitter, tape, part, walk);
+            levels == 0 ? linear : known_in(splitter, tape, part, walk, false).linear;
         add_open(part, of, walk.middle, sums);
         graph.add_open(part.lo, part.hi, of);
     }
@@ -65,21 +85,24 @@ void walk_piece(Splitter &splitter, const cpu::ShortTape &tape, const Block &pie
                 int more, int &spare, const Walk &walk, CellSums &sums) {
     constexpr int of_seam = 8; // a search takes so many times what a box does, about
     constexpr double well = 1.02, across_edge = 1.05;
-    const std::optional<Linear> linear = linear_in(splitter, tape, piece, walk);
-    const std::optional<Slant> slant =
-        linear ? slant_in(splitter.evaluator, tape, splitter.boxes, piece.lo, piece.hi, *linear)
-               : std::nullopt;
-    const bool last =
-        levels <= 0 && (!linear || spare <= 0 || more <= (slant ? for_places - for_edges : 0));
+    const Known known = known_in(splitter, tape, piece, walk, true);
+    const auto &[linear, slant, zeros] = known;
+    const bool analysed = linear || zeros.known;
+    const bool last = levels <= 0 && (!analysed || spare <= 0 ||
+                                      more <= (slant || zeros.known ? for_places - for_edges : 0));
     if (slant && (slant->most < well || last || (levels <= 0 && slant->most < across_edge)))
         return walk_graph(splitter, tape, piece, linear, *slant, std::max(levels, 0), walk, sums);
     const bool asked = linear && !slant && spare > 0;
     if (asked) spare -= of_seam;
     const bool touches =
         asked && seam_in(splitter.evaluator, tape, splitter.boxes, piece.lo, piece.hi, walk.thin);
-    if (touches || last) {
+    const bool free = zeros.known && zeros.sheets.empty();
+    if (touches || free || last) {
         add_open(piece, linear, walk.middle, sums);
-        if (!touches) sums.add_open_place(piece.lo, piece.hi);
+        // The surface is part of what all sheets are together.
+        for (const Linear &sheet : zeros.sheets)
+            if (!touches) sums.most_area += area_of_sheet(piece.lo, piece.hi, sheet).hi;
+        if (!touches && !zeros.known) sums.add_open_place(piece.lo, piece.hi);
         return;
     }
     if (levels <= 0) --spare;
@@ -113,7 +136,10 @@ void walk_leaf(Splitter &splitter, const OpenBlock &leaf, const Walk &walk, Cell
     std::vector<Block> open{leaf.piece};
     const TapePtr tape = tape_in(splitter, leaf.tape, leaf.piece);
     int spare = walk.spare;
-    if (linear_in(splitter, *tape, leaf.piece, walk))
+    splitter.by_zeros = false;
+    const Known known = known_in(splitter, *tape, leaf.piece, walk, false);
+    splitter.by_zeros = known.zeros.known;
+    if (known.linear || known.zeros.known)
         return walk_piece(splitter, *tape, open[0], walk.by_planes, for_places, spare, walk, sums);
     for (int level = 0; level < walk.by_dividing && !open.empty(); ++level)
         open = divided(splitter, *tape, open, walk, sums);

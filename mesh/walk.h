@@ -96,6 +96,7 @@ struct CellSums {
 struct Splitter {
     explicit Splitter(const Field &field) : evaluator(field) {}
     Evaluator evaluator;
+    bool by_zeros = false; // of the leaf at hand no slopes are known, but where it is 0
     cpu::Boxes boxes;
 };
 
