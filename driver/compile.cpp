@@ -204,7 +204,8 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
         } else {
             const ir::Interval times =
                 proof_options.times.value_or(ir::Interval(0, out.scene.render.time_end));
-            find_framing(out.scene, times, out.diagnostics); // which says what a pixel shows
+            // Which says what a pixel shows.
+            find_framing(out.scene, times, options.section, out.diagnostics);
             tell_of_view_inside(out.scene, times.lo, out.diagnostics);
             proof::bound_rounding(out.scene, out.diagnostics, proof_options.times);
         }

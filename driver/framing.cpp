@@ -96,7 +96,28 @@ ir::Box of_bounded(ir::Scene &scene, ir::Interval times, double &work) {
 
 } // namespace
 
-void find_framing(ir::Scene &scene, ir::Interval times, Diagnostics &diagnostics) {
+// Where a section keeps nothing of a solid that has an end along its axis.
+static void tell_of_section(const ir::Scene &scene, const ir::Section &section, Span span,
+                            Diagnostics &diagnostics) {
+    const ir::ShapeId whole = scene.shapes[scene.root].children[0]; // as cut_open makes it
+    const ir::Box &box = scene.facts[whole.index].bounds;
+    const auto i = static_cast<std::size_t>(section.axis);
+    const char axis = "xyz"[i];
+    const auto end = [](double height) {
+        return std::isfinite(height) ? fmt::format("{:.6g}", height) : std::string();
+    };
+    Diagnostic &told =
+        diagnostics.add(Code::NothingFramed, span,
+                        fmt::format("the section {}={}..{} keeps nothing of this scene", axis,
+                                    end(section.from), end(section.to)));
+    if (box.empty() || !(std::isfinite(box.lo[i]) && std::isfinite(box.hi[i]))) return;
+    told.note(fmt::format("its solid lies from {} = {:.6g} to {:.6g}", axis, box.lo[i], box.hi[i]))
+        .help(fmt::format("cut within that, as by `--section {}=..{:.3g}`", axis,
+                          0.5 * (box.lo[i] + box.hi[i])));
+}
+
+void find_framing(ir::Scene &scene, ir::Interval times, const std::optional<ir::Section> &section,
+                  Diagnostics &diagnostics) {
     if (scene.camera.given || scene.top_level.empty()) return;
     double work = most_work;
     scene.framed = of_bounded(scene, times, work);
@@ -122,6 +143,8 @@ void find_framing(ir::Scene &scene, ir::Interval times, Diagnostics &diagnostics
             .note("the view shows the surroundings of the origin")
             .help("write `camera(at: [3, 2, 5], look_at: [0, 0, 0])`, from where you want to see "
                   "it, or cut the solid off, as with `& box(10)`");
+    else if (section)
+        tell_of_section(scene, *section, span, diagnostics);
     else
         diagnostics
             .add(Code::NothingFramed, span, "this scene is empty: no point lies in the solid")

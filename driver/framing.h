@@ -4,13 +4,17 @@
 #include "base/diagnostic.h"
 #include "ir/interval.h"
 #include "ir/scene.h"
+#include "ir/section.h"
+
+#include <optional>
 
 namespace fathom::driver {
 
 // Narrows Scene::framed of a lowered scene whose camera is not given to the box of what has an end,
 // at the params' present values and over these times, in seconds. Where nothing has one, or there is
-// no solid at all, a note says so and what to write.
-void find_framing(ir::Scene &scene, ir::Interval times, Diagnostics &diagnostics);
+// no solid at all, a note says so and what to write. `section`: what the scene was cut open by.
+void find_framing(ir::Scene &scene, ir::Interval times, const std::optional<ir::Section> &section,
+                  Diagnostics &diagnostics);
 
 // A note where the view, framed already, begins deep in the solid, at the params' present values and
 // that time. Not looked for in a scene of more than `most_operations_inside` operations a point.

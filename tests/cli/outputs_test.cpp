@@ -122,6 +122,12 @@ TEST_CASE("a section shows what lies inside, as the text that cuts the solid doe
     CHECK(orange > 40);
     CHECK(differ < 10); // of 9,216 numbers: pixels on the rim
     CHECK(rendered("whole.sdf --section z=-3..4") == whole);
+    folder.write("ball.sdf", "sphere(1)\n");
+    const std::string nothing =
+        shell(folder, "fathom render ball.sdf -o none.png --size 16x16 --section z=50..60").err;
+    CHECK(contains(nothing, "the section z=50..60 keeps nothing of this scene"));
+    CHECK(contains(nothing, "its solid lies from z = -"));
+    CHECK(contains(nothing, "`--section z=.."));
     for (const char *wrong : {"z=1", "w=..1", "z=..", "z=2..1", "z=0..0", "z=a..", "z"})
         CHECK(contains(
             shell(folder, std::string("fathom render whole.sdf -o a.png --section ") + wrong).err,
