@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace fathom::typecheck {
 
@@ -79,6 +80,24 @@ static Value result_of(Interpreter &ev, const Outcome &out, Span place) {
         ev, Code::StageMismatch, place,
         "what this returns is chosen by the point, so every way has to give numbers of one type");
     return poison();
+}
+
+Value value_of_if(Interpreter &ev, const File &ast, const lang::If &node, Span place,
+                  std::uint32_t frame) {
+    Exit *leaving = std::exchange(ev.leaving, nullptr);
+    const Outcome out = run_if(ev, ast, node, frame, place);
+    const auto never = [](const Value &v) { return v.kind == ValueKind::Bool && v.num[0] == 0; };
+    if (leaving) {
+        *leaving = out.exit;
+    } else if (!never(out.exit.returned) || !never(out.exit.broke)) {
+        report(ev, Code::WrongPlace, place,
+               fmt::format("`{}` leaves an `if` whose value is used here",
+                           never(out.exit.broke) ? "return" : "break"))
+            .help("declare the value as a name of its own, `let v = if … { … } else { … }`, or let "
+                  "the `if` stand above as a statement");
+        return poison();
+    }
+    return out.value;
 }
 
 static Value finish(Interpreter &ev, const Closure &c, Value v, const lang::Function &f,

@@ -420,12 +420,6 @@ static Value eval_unary(Interpreter &ev, const File &ast, const lang::Unary &u, 
     return negate(ev, v, place);
 }
 
-static Value eval_if(Interpreter &ev, const File &ast, const lang::If &node, Span place,
-                     std::uint32_t frame) {
-    Outcome out = run_if(ev, ast, node, frame, place);
-    return out.value;
-}
-
 static Value eval_kind(Interpreter &ev, const File &ast, lang::ExprId id, std::uint32_t frame) {
     const lang::Expr &e = ast.exprs[id];
     struct Visit {
@@ -473,7 +467,7 @@ static Value eval_kind(Interpreter &ev, const File &ast, lang::ExprId id, std::u
         Value operator()(const lang::Index &i) { return eval_index(ev, ast, i, span, frame); }
         Value operator()(const lang::Member &m) { return eval_member(ev, ast, m, span, frame); }
         Value operator()(const lang::Lambda &l) { return make_closure(ev, ast, l.function, frame); }
-        Value operator()(const lang::If &i) { return eval_if(ev, ast, i, span, frame); }
+        Value operator()(const lang::If &i) { return value_of_if(ev, ast, i, span, frame); }
         Value operator()(const lang::BlockExpr &b) {
             return run_block(ev, ast, b.block, frame).value;
         }

@@ -239,6 +239,7 @@ struct Interpreter {
     std::vector<ActiveCall> calls{};
     int depth = 0;                   // nested evaluations, of any kind
     const char *stack_end = nullptr; // evaluation goes no deeper than this address
+    Exit *leaving = nullptr;         // of the declaration whose value, an `if`, comes next
     int in_field = 0;                // > 0 while a field's body is evaluated
     bool own_field = false;          // … and the outermost one is not the library's
     int quiet = 0; // > 0: errors are counted, not reported (overload resolution, trial loops)
@@ -411,6 +412,9 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
                 std::uint32_t frame); // assignment.cpp, as is the journal
 Outcome run_if(Interpreter &ev, const File &ast, const lang::If &node, std::uint32_t frame,
                Span place);
+// The value of an `if`. Its arms leave the body only where a declaration takes what they leave by.
+Value value_of_if(Interpreter &ev, const File &ast, const lang::If &node, Span place,
+                  std::uint32_t frame);
 // A function with the frame that its free names are read in.
 Value make_closure(Interpreter &ev, const File &ast, lang::FunctionId function,
                    std::uint32_t frame);

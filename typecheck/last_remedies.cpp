@@ -370,4 +370,20 @@ void help_with_region(const Interpreter &ev, Diagnostic &d, const Value &v, Span
     if (name == "box") d.help("its region", {{place, "aabb(" + size + " / -2, " + size + " / 2)"}});
 }
 
+void report_var_at_top(Interpreter &ev, const File &ast, const lang::Var &var, Span place) {
+    Diagnostic &d =
+        report(ev, Code::WrongPlace, place,
+               "`var` stands inside a function; at the top of a file names do not change");
+    for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
+        auto *a = std::get_if<lang::Assign>(&s.kind);
+        auto *name = a ? std::get_if<lang::Name>(&ast.exprs[a->target].kind) : nullptr;
+        if (!name || name->text != var.name.text) continue;
+        d.label(s.span, "changed here")
+            .help(fmt::format("give each value a name of its own: `let {0} = …`, `let {0}2 = …`",
+                              var.name.text));
+        return;
+    }
+    d.help("write `let`", {{{place.source, place.begin, place.begin + 3}, "let"}});
+}
+
 } // namespace fathom::typecheck

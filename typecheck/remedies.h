@@ -217,4 +217,6 @@ void help_with_cut(Diagnostic &d, const Value &cut);
 bool report_unfinished(Interpreter &ev, const Closure &c, const lang::Function &f,
                        std::string_view name);
 
+// Reports a `var` outside of functions.
+void report_var_at_top(Interpreter &ev, const File &ast, const lang::Var &var, Span place);
 } // namespace fathom::typecheck

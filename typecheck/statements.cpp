@@ -5,6 +5,7 @@
 #include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
 #include "typecheck/places.h"
+#include "typecheck/remedies.h"
 
 #include <fmt/format.h>
 
@@ -22,22 +23,6 @@ static Value declared_value(Interpreter &ev, const File &ast, lang::ExprId value
     if (!check_type(ev, *type)) return v;
     bool ok = true;
     return convert(ev, v, *type, ast.exprs[value].span, quoted(name), ok);
-}
-
-static void report_var_at_top(Interpreter &ev, const File &ast, const lang::Var &var, Span place) {
-    Diagnostic &d =
-        report(ev, Code::WrongPlace, place,
-               "`var` stands inside a function; at the top of a file names do not change");
-    for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
-        auto *a = std::get_if<lang::Assign>(&s.kind);
-        auto *name = a ? std::get_if<lang::Name>(&ast.exprs[a->target].kind) : nullptr;
-        if (!name || name->text != var.name.text) continue;
-        d.label(s.span, "changed here")
-            .help(fmt::format("give each value a name of its own: `let {0} = …`, `let {0}2 = …`",
-                              var.name.text));
-        return;
-    }
-    d.help("write `let`", {{{place.source, place.begin, place.begin + 3}, "let"}});
 }
 
 bool run_simple(Interpreter &ev, const File &ast, const lang::Stmt &stmt, std::uint32_t frame) {
@@ -112,10 +97,20 @@ static Value dropped(Interpreter &ev, const Value &v, Span place) {
     return v;
 }
 
+// Whether a name is declared as an `if`, whose arms may leave the body: what they give then is for
+// nobody.
+static bool declares_choice(const File &ast, const lang::Stmt &stmt) {
+    const auto *let = std::get_if<lang::Let>(&stmt.kind);
+    const auto *var = std::get_if<lang::Var>(&stmt.kind);
+    return (let || var) &&
+           std::holds_alternative<lang::If>(ast.exprs[let ? let->value : var->value].kind);
+}
+
 static Exit run_one(Interpreter &ev, const File &ast, const lang::Stmt &stmt, bool is_last,
                     std::uint32_t frame, Value &last) {
     Exit exit;
     last = unit();
+    ev.leaving = declares_choice(ast, stmt) ? &exit : nullptr;
     if (run_simple(ev, ast, stmt, frame)) return exit;
     if (auto *e = std::get_if<lang::ExprStmt>(&stmt.kind)) {
         if (auto *choice = std::get_if<lang::If>(&ast.exprs[e->value].kind)) {
