@@ -2,6 +2,7 @@
 #include "proof/forms.h"
 
 #include "proof/continuity.h"
+#include "proof/guarded.h"
 
 #include <algorithm>
 #include <cmath>
@@ -247,7 +248,7 @@ std::optional<double> one_exponent(const Graph &graph, const std::vector<PowerOf
     const double n = terms[0].exponent;
     const bool even = std::fmod(n, 2) == 0;
     const bool all = std::ranges::all_of(terms, [&](const PowerOf &term) {
-        return term.exponent == n && (even || graph[term.base].op == Op::Abs);
+        return term.exponent == n && (even || is_never_negative(graph, term.base));
     });
     return terms.size() > 1 && all && n >= 1 ? std::optional(n) : std::nullopt;
 }
@@ -282,7 +283,8 @@ std::optional<PNormParts> norm_of_unknown(Graph &graph, NodeId id) {
             todo.insert(todo.end(), {second, first});
             continue;
         }
-        if (second != out.power || graph[first].op != Op::Abs || out.parts.size() == 15) return {};
+        if (second != out.power || !is_never_negative(graph, first) || out.parts.size() == 15)
+            return {};
         out.parts.push_back(first);
     }
     return out.parts.size() > 1 ? std::optional(out) : std::nullopt;

@@ -78,9 +78,14 @@ NodeId with_bounds(Graph &graph, NodeId root, const std::vector<Order> &orders, 
 
 bool is_never_negative(const Graph &graph, NodeId id, int depth) {
     constexpr ir::OpSet sizes{Op::Length, Op::Abs, Op::Exp, Op::Exp2, Op::Sqrt},
-        by_all{Op::Add, Op::Min, Op::Select, Op::Div, Op::Mul, Op::Splat};
+        by_all{Op::Add, Op::Min, Op::Select, Op::Clamp, Op::Div, Op::Mul, Op::Splat};
     const ir::Node node = graph[id];
-    if (const auto number = graph.as_number(id)) return *number >= 0;
+    if (graph.is_constant(id)) {
+        const auto numbers = graph.constant_of(id).value;
+        const int count = ir::components(node.type);
+        return std::all_of(numbers.begin(), numbers.begin() + count,
+                           [](double number) { return number >= 0; });
+    }
     if (sizes[node.op]) return true;
     if ((node.op == Op::Mul || node.op == Op::Dot) && graph.arg(id, 0) == graph.arg(id, 1))
         return true;
@@ -90,7 +95,7 @@ bool is_never_negative(const Graph &graph, NodeId id, int depth) {
         return depth > 0 && is_never_negative(graph, graph.arg(id, 0), depth - 1);
     }
     if (depth == 0 || (!by_all[node.op] && node.op != Op::Max)) return false;
-    const int first = node.op == Op::Select ? 1 : 0;
+    const int first = node.op == Op::Select || node.op == Op::Clamp ? 1 : 0;
     for (int i = first; i < int(node.count); ++i)
         if (is_never_negative(graph, graph.arg(id, i), depth - 1) == (node.op == Op::Max))
             return node.op == Op::Max;

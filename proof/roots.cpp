@@ -5,6 +5,7 @@
 #include "ir/passes/walk.h"
 #include "proof/continuity.h"
 #include "proof/forms.h"
+#include "proof/guarded.h"
 
 #include <algorithm>
 #include <cmath>
@@ -249,6 +250,22 @@ std::optional<std::vector<NodeId>> norm_parts(Graph &graph, NodeId id) {
     return root ? squares(graph, graph.arg(id, 0)) : std::nullopt;
 }
 
+std::optional<NodeId> rounded_sizes(Graph &graph, NodeId id) {
+    const ir::Node node = graph[id];
+    if (node.op != Op::Sqrt || !ir::is_vector(node.type)) return {};
+    const NodeId sum = graph.arg(id, 0);
+    if (graph[sum].op != Op::Add) return {};
+    for (int i = 0; i < 2; ++i) {
+        const NodeId square = graph.arg(sum, i), rest = graph.arg(sum, 1 - i);
+        const ir::Graph::Reads reads = graph.reads(rest);
+        if (graph[square].op != Op::Mul || graph.arg(square, 0) != graph.arg(square, 1) ||
+            reads.point || reads.free_vars || !is_never_negative(graph, rest))
+            continue;
+        return graph.arg(square, 0);
+    }
+    return {};
+}
+
 namespace {
 
 std::vector<NodeId> nodes_below(const Graph &graph, NodeId root) {
@@ -267,7 +284,9 @@ std::vector<NodeId> nodes_below(const Graph &graph, NodeId root) {
 
 } // namespace
 
-NodeId with_squares_compared(Graph &graph, NodeId root) {
+constexpr int max_rounds = 8; // choices that read one another
+
+static NodeId with_some_squares_compared(Graph &graph, NodeId root) {
     ir::Substitution map;
     for (NodeId id : nodes_below(graph, root)) {
         const ir::Node node = graph[id];
@@ -278,6 +297,15 @@ NodeId with_squares_compared(Graph &graph, NodeId root) {
         map[id] = graph.make(node.op, {graph.make(Op::Dot, {u, u}), graph.make(Op::Dot, {v, v})});
     }
     return map.empty() ? root : ir::substitute(graph, root, map);
+}
+
+NodeId with_squares_compared(Graph &graph, NodeId root) {
+    for (int round = 0; round < max_rounds; ++round) {
+        const NodeId next = with_some_squares_compared(graph, root);
+        if (next == root) break;
+        root = next;
+    }
+    return root;
 }
 
 // The one choice of vectors that a vector is made of, by component or whole.
@@ -295,10 +323,14 @@ NodeId choice_in(const Graph &graph, NodeId vector, int depth = 0) {
     return found;
 }
 
-NodeId with_chosen_lengths(Graph &graph, NodeId root, Work &work) {
+// One choice of each vector: of several vectors the length is a choice among lengths that are such
+// choices themselves, as is its square in what is compared.
+static NodeId with_a_choice_of_lengths(Graph &graph, NodeId root, Work &work) {
     ir::Substitution map;
     for (NodeId id : nodes_below(graph, root)) {
-        if (graph[id].op != Op::Length) continue;
+        const ir::Node node = graph[id];
+        const bool is_square = node.op == Op::Dot && graph.arg(id, 0) == graph.arg(id, 1);
+        if (node.op != Op::Length && !is_square) continue;
         const NodeId choice = choice_in(graph, graph.arg(id, 0));
         if (!choice) continue;
         const NodeId condition = graph.arg(choice, 0), first = graph.arg(choice, 1),
@@ -311,6 +343,15 @@ NodeId with_chosen_lengths(Graph &graph, NodeId root, Work &work) {
             map[id] = graph.make(Op::Select, {condition, a, b});
     }
     return map.empty() ? root : ir::substitute(graph, root, map);
+}
+
+NodeId with_chosen_lengths(Graph &graph, NodeId root, Work &work) {
+    for (int round = 0; round < max_rounds; ++round) {
+        const NodeId next = with_a_choice_of_lengths(graph, root, work);
+        if (next == root) break;
+        root = next;
+    }
+    return root;
 }
 
 NodeId with_signed_roots(Graph &graph, NodeId root) {

@@ -21,6 +21,10 @@ std::optional<RootOfChoice> root_inward(ir::Graph &graph, ir::NodeId id);
 // The parts of which the node is the length, a square root of a sum of squares.
 std::optional<std::vector<ir::NodeId>> norm_parts(ir::Graph &graph, ir::NodeId id);
 
+// The vector x of which the node is sqrt(x*x + c) by component, c at least 0 and the same for all
+// points.
+std::optional<ir::NodeId> rounded_sizes(ir::Graph &graph, ir::NodeId id);
+
 // sign(d)*sqrt(|d|), which rises with d, of choices, of sums of squares and of their negatives: as
 // the choice of lengths and their negatives, all over the expression below `root`.
 ir::NodeId with_signed_roots(ir::Graph &graph, ir::NodeId root);

@@ -204,6 +204,11 @@ Slot Flattener::flatten_node(Scope &scope, NodeId id) {
             return parts->size() > 1 ? emit_by_pieces(scope, id, std::move(out), *parts)
                                      : emit(scope, std::move(out));
         }
+        if (const auto x = rounded_sizes(graph, id)) {
+            out.norm = 1;
+            out.turned = {slot(scope, *x)};
+            return emit_plain(scope, id, std::move(out));
+        }
         if (auto parts = p_norm(graph, id)) {
             parts->parts.push_back(parts->power);
             return emit(scope, out, Form::PNorm, parts->parts);

@@ -1,7 +1,8 @@
 // A random search over sums of powers and their roots, as power smooth minima and maxima are
 // (lipschitz.md, 2.40): powers of whole, broken and negative exponents and of params, of numbers that
 // may be 0, joined by sums, quotients and inverses, and roots of these that fit, or nearly. And over
-// signs times functions of what they are of, which are 0 there, or nearly (2.1).
+// signs times functions of what they are of, which are 0 there, or nearly (2.1); over rounded sizes
+// and what norms are made of (2.2, 2.3).
 // Whatever the checker accepts is measured (judge.h). FATHOM_EFFORT=10 is the long form.
 #include "judge.h"
 
@@ -143,7 +144,66 @@ class SignedFunction : public Chance {
     }
 };
 
+// Sizes with their corners rounded, norms of powers of what is never below 0, or nearly is, and
+// inverses of cosh.
+class RoundedNorm : public Chance {
+  public:
+    using Chance::Chance;
+
+    std::string scene() {
+        std::string out =
+            "implicit(p => {\n  var q = " + of({"p", "p.zxy", "1.5 * p", "p * p.yzx"}) + " - " +
+            vector() + "\n";
+        for (std::size_t i = 1 + pick(3); i > 0; --i)
+            out += "  q = " + rounded() + "\n  q.xz = rotate2(q.xz, " + between(-2, 2) + ")\n";
+        return out + "  " + norm() + " - " + between(0.2, 0.6) + "\n}, within: ball(2))\n";
+    }
+
+  private:
+    std::string vector() {
+        return "vec3(" + between(-1, 1) + ", " + between(-1, 1) + ", " + between(-1, 1) + ")";
+    }
+    std::string rounded() {
+        const std::string c = between(0.001, 0.3);
+        switch (pick(9)) {
+        case 0: return "sqrt(q * q + vec3(" + c + ", 0.02, " + of({"0.3", "0", "-0.01"}) + "))";
+        case 1: return "sqrt(" + c + " * " + c + " + q * q) - " + c;
+        case 2: return "sqrt(" + of({"q * q.yzx", "2 * q * q", "q * q"}) + " + " + c + ")";
+        case 3: return "sqrt(q * q " + of({"+ 0.01 * p.x * p.x", "- 0.001", "+ vec3(q.x)"}) + ")";
+        case 4: return "max(q, " + of({"0", "0", "-0.1", "0.1"}) + ")";
+        case 5: return "clamp(q, 0, " + between(0.5, 3) + ")";
+        default: return "sqrt(q * q + " + c + ") - " + between(0.1, 0.8);
+        }
+    }
+    std::string norm() {
+        const std::string n = of({"3", "5", "2.5", "1.5", "1", "7"}),
+                          root = pick(6) == 0 ? between(0.2, 1) : "1 / " + n;
+        const std::string with = "pow(max(q.x, 0), " + n + ") + pow(q.y, " + n + ") + pow(" +
+                                 of({"abs(q.z)", "max(q.z, 0)", "clamp(q.z, 0, 1)", "q.z"}) + ", " +
+                                 n + ")";
+        switch (pick(6)) {
+        case 0: return "pow(" + with + ", " + root + ")";
+        case 1: {
+            const std::string m = "let m = " + of({"max(q, 0)", "max(q, -0.1)", "abs(q)"}) + "\n  ";
+            return m + "pow(pow(m.x, " + n + ") + pow(m.y, " + n + ") + pow(m.z, " + n + "), " +
+                   root + ")";
+        }
+        case 2: return "acosh(" + of({"1", "max(1, 1)", "0.9"}) + " + 0.5 * dot(q, q))";
+        case 3: return "acosh(1 + " + of({"q.x * q.x", "abs(q.y)", "length(q)"}) + ")";
+        case 4: return "length(max(q, 0)) + min(max(q.x, max(q.y, q.z)), 0)";
+        default: return "length(q)";
+        }
+    }
+};
+
 } // namespace
+
+TEST_CASE("rounded sizes and norms are refused, or are no steeper than proved") {
+    const Judged judged = judge_scenes<RoundedNorm>(effort(60), 2400);
+    CHECK(judged.wrong == 0);
+    CHECK(judged.accepted > judged.scenes / 3);
+    CHECK(judged.accepted < judged.scenes);
+}
 
 TEST_CASE("signs times functions are refused, or do not jump") {
     const Judged judged = judge_scenes<SignedFunction>(effort(60), 800);
