@@ -68,14 +68,11 @@ std::vector<Row> rows_of(const v1::Measures &of, const MeasureCommand &command) 
         const double one = mass_of_one(command);
         rows.push_back({"mass", length.empty() ? "" : "g", one * volume, times(of.volume, one)});
     }
-    for (std::size_t i = 0; i < 3; ++i)
-        add_axis(
-            "xyz" [i], length,
-            {
-                of.mesh_box.lo[i], of.mesh_box.hi[i], of.mesh_center[i], of.least[i],
-                    of.greatest[i], of.center[i]
-            },
-            rows);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Along along{of.mesh_box.lo[i], of.mesh_box.hi[i], of.mesh_center[i],
+                          of.least[i],       of.greatest[i],    of.center[i]};
+        add_axis("xyz"[i], length, along, rows);
+    }
     return rows;
 }
 
@@ -84,14 +81,11 @@ std::vector<Row> rows_of(const v1::FlatMeasures &of, const MeasureCommand &comma
     std::vector<Row> rows{
         {"area", unit_of(command, 2), best(of.contours_area, of.area), of.area},
         {"perimeter", length, best(of.contours_perimeter, of.perimeter), of.perimeter}};
-    for (std::size_t i = 0; i < 2; ++i)
-        add_axis(
-            "xy" [i], length,
-            {
-                of.contours_least[i], of.contours_greatest[i], of.contours_center[i], of.least[i],
-                    of.greatest[i], of.center[i]
-            },
-            rows);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Along along{of.contours_least[i], of.contours_greatest[i], of.contours_center[i],
+                          of.least[i],          of.greatest[i],          of.center[i]};
+        add_axis("xy"[i], length, along, rows);
+    }
     return rows;
 }
 

@@ -21,8 +21,12 @@ double diagonal(const Block &part) {
 struct Known {
     std::optional<Linear> linear; // it, or what has its sign there, all but linear
     std::optional<Slant> slant;   // of that
-    Zeros zeros;                  // where there is no slant
+    Zeros zeros;                  // where there is no slant, or a poor one
 };
+
+// A surface that all but follows the direction that it is a graph along: its sheets tell more, or
+// nothing does.
+constexpr double poor = 4, useless = 100;
 
 void flatten(Linear &linear) { linear.slope[2] = linear.spread[2] = 0; }
 
@@ -36,12 +40,16 @@ Known known_in(Splitter &splitter, const cpu::ShortTape &tape, const Block &bloc
     if (known.linear && walk.flat) flatten(*known.linear);
     if (known.linear && fully)
         known.slant = slant_in(evaluator, tape, boxes, block.lo, block.hi, *known.linear);
-    if (known.slant || (known.linear && !fully)) return known;
+    if (known.slant ? known.slant->most < poor : known.linear && !fully) return known;
     Border border = border_over(evaluator, tape, boxes, block.lo, block.hi);
     known.zeros = std::move(border.zeros);
+    if (walk.flat) std::ranges::for_each(known.zeros.sheets, flatten);
+    if (known.slant) {
+        if (known.zeros.known || known.slant->most > useless) known.slant.reset();
+        return known;
+    }
     known.linear = border.linear ? border.linear : border.like;
     if (walk.flat && known.linear) flatten(*known.linear);
-    if (walk.flat) std::ranges::for_each(known.zeros.sheets, flatten);
     if (border.like && !border.linear) known.slant = slant_of(*known.linear);
     return known;
 }
