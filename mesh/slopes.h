@@ -39,7 +39,8 @@ Tie tie_of(const Level &level, const Level &other, const Point &lo, const Point 
 std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                              const Point &lo, const Point &hi);
 
-// The field in a box. None where it is not known how the field changes, or it is cut off at bounds. `boxes` is memory.
+// The field in a box. None where it is not known how the field changes, or it is cut off at bounds.
+// `boxes` is memory.
 std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &tape,
                                   cpu::Boxes &boxes, const Point &lo, const Point &hi);
 

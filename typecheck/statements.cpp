@@ -111,7 +111,9 @@ static Exit run_one(Interpreter &ev, const File &ast, const lang::Stmt &stmt, bo
     Exit exit;
     last = unit();
     ev.leaving = declares_choice(ast, stmt) ? &exit : nullptr;
-    if (run_simple(ev, ast, stmt, frame)) return exit;
+    const bool done = run_simple(ev, ast, stmt, frame);
+    ev.leaving = nullptr; // where the limits ended the evaluation before its `if`
+    if (done) return exit;
     if (auto *e = std::get_if<lang::ExprStmt>(&stmt.kind)) {
         if (auto *choice = std::get_if<lang::If>(&ast.exprs[e->value].kind)) {
             Outcome out = run_if(ev, ast, *choice, frame, stmt.span);
