@@ -199,7 +199,7 @@ class RoundedNorm : public Chance {
 } // namespace
 
 TEST_CASE("rounded sizes and norms are refused, or are no steeper than proved") {
-    const Judged judged = judge_scenes<RoundedNorm>(effort(60), 2400);
+    const Judged judged = judge_scenes<RoundedNorm>(effort(20), 2400);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 3);
     CHECK(judged.accepted < judged.scenes);
