@@ -214,7 +214,7 @@ Slopes slopes_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes 
             else
                 made[0] = through(cpu::kernel_of_variant(step.target), in);
             for (const Varying &one : in) {
-                made[0].jumps = made[0].jumps || one.jumps;
+                made[0].jumps = made[0].jumps || (one.jumps && one.range.lo < one.range.hi);
                 made[0].beyond += one.beyond;
             }
             if (waves) made[1].jumps = made[0].jumps, made[1].beyond = made[0].beyond;

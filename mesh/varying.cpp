@@ -206,6 +206,7 @@ Varying comparison_of(const Varying &a, const Varying &b) {
     Varying made;
     made.known = difference.known;
     made.range = {0, 1};
+    made.jumps = true; // it may be read as a number
     made.beyond = difference.error / (slope > 0 ? slope : 1);
     return made;
 }

@@ -282,11 +282,18 @@ std::vector<NodeId> nodes_below(const Graph &graph, NodeId root) {
     return nodes;
 }
 
-} // namespace
+// Written anew until nothing changes: choices may read one another.
+template <class Rewrite> NodeId in_rounds(NodeId root, Rewrite rewrite) {
+    constexpr int max_rounds = 8;
+    for (int round = 0; round < max_rounds; ++round) {
+        const NodeId next = rewrite(root);
+        if (next == root) break;
+        root = next;
+    }
+    return root;
+}
 
-constexpr int max_rounds = 8; // choices that read one another
-
-static NodeId with_some_squares_compared(Graph &graph, NodeId root) {
+NodeId with_some_squares_compared(Graph &graph, NodeId root) {
     ir::Substitution map;
     for (NodeId id : nodes_below(graph, root)) {
         const ir::Node node = graph[id];
@@ -297,15 +304,6 @@ static NodeId with_some_squares_compared(Graph &graph, NodeId root) {
         map[id] = graph.make(node.op, {graph.make(Op::Dot, {u, u}), graph.make(Op::Dot, {v, v})});
     }
     return map.empty() ? root : ir::substitute(graph, root, map);
-}
-
-NodeId with_squares_compared(Graph &graph, NodeId root) {
-    for (int round = 0; round < max_rounds; ++round) {
-        const NodeId next = with_some_squares_compared(graph, root);
-        if (next == root) break;
-        root = next;
-    }
-    return root;
 }
 
 // The one choice of vectors that a vector is made of, by component or whole.
@@ -325,7 +323,7 @@ NodeId choice_in(const Graph &graph, NodeId vector, int depth = 0) {
 
 // One choice of each vector: of several vectors the length is a choice among lengths that are such
 // choices themselves, as is its square in what is compared.
-static NodeId with_a_choice_of_lengths(Graph &graph, NodeId root, Work &work) {
+NodeId with_a_choice_of_lengths(Graph &graph, NodeId root, Work &work) {
     ir::Substitution map;
     for (NodeId id : nodes_below(graph, root)) {
         const ir::Node node = graph[id];
@@ -345,13 +343,14 @@ static NodeId with_a_choice_of_lengths(Graph &graph, NodeId root, Work &work) {
     return map.empty() ? root : ir::substitute(graph, root, map);
 }
 
+} // namespace
+
+NodeId with_squares_compared(Graph &graph, NodeId root) {
+    return in_rounds(root, [&](NodeId now) { return with_some_squares_compared(graph, now); });
+}
+
 NodeId with_chosen_lengths(Graph &graph, NodeId root, Work &work) {
-    for (int round = 0; round < max_rounds; ++round) {
-        const NodeId next = with_a_choice_of_lengths(graph, root, work);
-        if (next == root) break;
-        root = next;
-    }
-    return root;
+    return in_rounds(root, [&](NodeId now) { return with_a_choice_of_lengths(graph, now, work); });
 }
 
 NodeId with_signed_roots(Graph &graph, NodeId root) {
