@@ -8,19 +8,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <sstream>
 
 namespace fathom::bench {
 
 namespace {
-
-std::string text_of(const std::string &path) {
-    std::ifstream in(path);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
 
 // The block, as often as makes `lines` of it, with `_0` counted up: `at_0 = 0` becomes `at_7 = 7`.
 std::string long_text(const std::string &block, std::size_t lines) {

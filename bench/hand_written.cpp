@@ -13,8 +13,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
-#include <fstream>
-#include <sstream>
 
 namespace fathom::bench {
 
@@ -47,13 +45,6 @@ constexpr Subject subjects[] = {
 };
 
 constexpr double most_drawn = 0.8, most_march = 0.5; // ratios to aim at
-
-std::string text_of(const std::string &file) {
-    std::ifstream in(file);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
 
 std::variant<gl::Program, gl::ProgramError> by_hand(const std::string &name, const ir::Scene &scene,
                                                     bool march_alone) {

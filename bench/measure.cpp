@@ -7,6 +7,7 @@
 #include <ctime>
 #include <fmt/format.h>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 namespace fathom::bench {
@@ -120,6 +121,13 @@ timed(PhaseTimes *times,
 }
 
 } // namespace
+
+std::string text_of(const std::string &path) {
+    std::ifstream in(path);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
 
 std::string scene_path(const std::string &name) {
     return FATHOM_SOURCE_DIR "/bench/scenes/" + name;

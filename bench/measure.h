@@ -47,6 +47,7 @@ struct PhaseTimes {
     double check = 0, prove = 0, lower = 0; // milliseconds of processor
     double all() const { return check + prove + lower; }
 };
+std::string text_of(const std::string &path); // what the file says
 std::string scene_path(const std::string &name);
 driver::Compilation compiled(const std::string &name, PhaseTimes *times = nullptr);
 driver::Compilation compiled_text(const std::string &name, std::string text,

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int runs = 31;
 
-double milliseconds(const timeval &time) {
+double milliseconds_of(const timeval &time) {
     return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_usec) * 1e-3;
 }
 
@@ -43,7 +43,7 @@ std::optional<Cost> cost(const std::string &program, std::vector<std::string> ar
     });
     posix_spawn_file_actions_destroy(&quiet);
     if (!done) return std::nullopt;
-    return Cost{wall * 1e3, milliseconds(used.ru_utime) + milliseconds(used.ru_stime)};
+    return Cost{wall * 1e3, milliseconds_of(used.ru_utime) + milliseconds_of(used.ru_stime)};
 }
 
 // Several runs of several commands in turn, so that what else the machine does meets all of them:

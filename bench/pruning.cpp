@@ -17,7 +17,7 @@ namespace fathom::bench {
 
 namespace {
 
-constexpr int side = 1024;
+constexpr int picture_side = 1024;
 
 // Evenly over a sphere (a Fibonacci lattice), about as wide as the gaps between them; in the order
 // of its spiral, where each is blended with a neighbour, or in none.
@@ -52,11 +52,11 @@ camera(at: [{2}, {2}, {2}], fov: 45deg)
 std::vector<cpu::Ray> rays_of(const cpu::Stage &stage, int every) {
     std::vector<cpu::Ray> rays;
     // by tiles of 32, as pictures are drawn
-    for (int tile = 0; tile < side * side / 1024; tile += every)
+    for (int tile = 0; tile < picture_side * picture_side / 1024; tile += every)
         for (int i = 0; i < 1024; ++i)
-            rays.push_back(
-                cpu::eye_ray(stage, static_cast<float>(tile % (side / 32) * 32 + i % 32) + 0.5f,
-                             static_cast<float>(tile / (side / 32) * 32 + i / 32) + 0.5f));
+            rays.push_back(cpu::eye_ray(
+                stage, static_cast<float>(tile % (picture_side / 32) * 32 + i % 32) + 0.5f,
+                static_cast<float>(tile / (picture_side / 32) * 32 + i / 32) + 0.5f));
     return rays;
 }
 
@@ -92,22 +92,25 @@ void add(Table &table, const std::string &what, const std::string &text, int eve
         return;
     }
     const ir::View view = ir::view_of(made.scene, 0, 1);
-    const cpu::Stage whole = cpu::prepare(made.scene, view, side, side, 0, cpu::Prune::Never);
+    const cpu::Stage whole =
+        cpu::prepare(made.scene, view, picture_side, picture_side, 0, cpu::Prune::Never);
     double pruned_seconds = 0, whole_seconds = 0;
     {
         const double begin = processor_seconds();
-        const cpu::Stage pruned = cpu::prepare(made.scene, view, side, side, 0, cpu::Prune::Always);
+        const cpu::Stage pruned =
+            cpu::prepare(made.scene, view, picture_side, picture_side, 0, cpu::Prune::Always);
         cpu::cast(pruned, rays_of(pruned, 1));
         pruned_seconds = processor_seconds() - begin;
     }
     const std::vector<cpu::Ray> sample = rays_of(whole, every);
     const double begin = processor_seconds();
     const std::vector<cpu::Landing> landings = cpu::cast(whole, sample);
-    whole_seconds = (processor_seconds() - begin) * side * side / double(sample.size());
+    whole_seconds =
+        (processor_seconds() - begin) * picture_side * picture_side / double(sample.size());
     double evaluations = 0;
     for (const cpu::Landing &landing : landings) evaluations += landing.steps;
-    const double point_seconds = seconds_a_point(whole, sample, landings) * evaluations * side *
-                                 side / double(sample.size());
+    const double point_seconds = seconds_a_point(whole, sample, landings) * evaluations *
+                                 picture_side * picture_side / double(sample.size());
     table.push_back({.what = what,
                      .value = 1 / pruned_seconds,
                      .unit = "pictures/s",
@@ -130,8 +133,8 @@ void add_floor(Table &table) {
         return;
     }
     const double begin = processor_seconds();
-    const cpu::Stage stage =
-        cpu::prepare(made.scene, ir::view_of(made.scene, 0, 1), side, side, 0, cpu::Prune::Never);
+    const cpu::Stage stage = cpu::prepare(made.scene, ir::view_of(made.scene, 0, 1), picture_side,
+                                          picture_side, 0, cpu::Prune::Never);
     cpu::cast(stage, rays_of(stage, 1));
     table.push_back({.what = "one sphere the size of the shells, without cells: the floor",
                      .value = 1 / (processor_seconds() - begin),

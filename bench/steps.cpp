@@ -22,7 +22,7 @@ namespace fathom::bench {
 
 namespace {
 
-constexpr int side = 256;
+constexpr int march_side = 256;
 
 // The largest singular value of the shear that a twist by `rate` is at `radius` from its axis: of
 // [[1, s], [0, 1]].
@@ -88,8 +88,8 @@ Count trace_plainly(const ir::Scene &scene, const cpu::Stage &from, bool boxed) 
     const cpu::Program distance = cpu::compile(scene, scene.distance);
     cpu::Scratch scratch = cpu::make_scratch(distance, from.inputs);
     std::vector<cpu::Ray> rays;
-    for (int y = 0; y < side; ++y)
-        for (int x = 0; x < side; ++x)
+    for (int y = 0; y < march_side; ++y)
+        for (int x = 0; x < march_side; ++x)
             rays.push_back(cpu::eye_ray(from, float(x) + 0.5f, float(y) + 0.5f));
     std::vector<float> t, ends, points[3], d(rays.size());
     for (auto &coordinate : points) coordinate.resize(rays.size());
@@ -135,7 +135,8 @@ void compare(Table &table, const std::string &what, const std::string &file, dou
         return;
     }
     const ir::Scene &scene = compilation.scene;
-    const cpu::Stage stage = cpu::prepare(scene, ir::view_of(scene, 0, 1), side, side, 0);
+    const cpu::Stage stage =
+        cpu::prepare(scene, ir::view_of(scene, 0, 1), march_side, march_side, 0);
     cpu::PictureOptions options;
     options.mode = cpu::PictureMode::Steps; // rays from the eye alone, without shading
     const cpu::Work work = cpu::render(stage, options).work;
@@ -148,7 +149,7 @@ void compare(Table &table, const std::string &what, const std::string &file, dou
     std::snprintf(global, sizeof global, "plain tracing, L = %.3g", bound);
     auto row = [&](const std::string &of, double ours, const char *unit, const std::string &to,
                    double theirs, double goal) {
-        constexpr double rays = double(side) * side;
+        constexpr double rays = double(march_side) * march_side;
         table.push_back({.what = of,
                          .value = ours / rays,
                          .unit = unit,
@@ -183,15 +184,16 @@ void compare_with_trial(Table &table, const std::string &what, const std::string
         return;
     }
     const ir::Scene &scene = compilation.scene;
-    const cpu::Stage stage = cpu::prepare(scene, ir::view_of(scene, 0, 1), side, side, 0);
+    const cpu::Stage stage =
+        cpu::prepare(scene, ir::view_of(scene, 0, 1), march_side, march_side, 0);
     cpu::PictureOptions options;
     options.mode = cpu::PictureMode::Steps;
     const cpu::Work work = cpu::render(stage, options).work;
     double bound = 1;
     for (const ir::ShapeFact &fact : scene.facts) bound = std::max(bound, fact.lipschitz_sup);
     std::vector<cpu::Ray> rays;
-    for (int y = 0; y < side; ++y)
-        for (int x = 0; x < side; ++x)
+    for (int y = 0; y < march_side; ++y)
+        for (int x = 0; x < march_side; ++x)
             rays.push_back(cpu::eye_ray(stage, float(x) + 0.5f, float(y) + 0.5f));
     const std::vector<cpu::Landing> truth = cpu::cast(stage, rays, true);
     constexpr float near = 0.005f; // of the distance
@@ -202,12 +204,12 @@ void compare_with_trial(Table &table, const std::string &what, const std::string
         int lost = 0;
         for (std::size_t i = 0; i < truth.size(); ++i)
             lost += truth[i].t >= 0 && (count.hit[i] < 0 || count.hit[i] > truth[i].t * (1 + near));
-        if (lost * 500 > side * side) break;
+        if (lost * 500 > march_side * march_side) break;
         best = std::move(count), found = by;
     }
     char constant[64];
     std::snprintf(constant, sizeof constant, "the best constant by trial, %.3g", found);
-    constexpr double all = double(side) * side;
+    constexpr double all = double(march_side) * march_side;
     table.push_back({.what = "steps a ray: " + what + ", nothing tuned",
                      .value = double(work.steps) / all,
                      .unit = "steps",

@@ -19,7 +19,7 @@ std::string roff(const std::string &text) {
 }
 
 // Within '…' of a shell.
-std::string quoted(const std::string &text) { return replaced(text, "'", "'\\''"); }
+std::string within_quotes(const std::string &text) { return replaced(text, "'", "'\\''"); }
 
 std::string roff_option(const HelpOption &option) {
     std::string head;
@@ -40,13 +40,13 @@ std::vector<std::string> names_of(const std::vector<HelpOption> &options) {
 // A line of zsh's _arguments for an option; files are completed where it takes a word.
 std::string zsh_option(const HelpOption &option) {
     std::string line;
-    const std::string what = replaced(replaced(quoted(option.what), "[", "\\["), "]", "\\]");
+    const std::string what = replaced(replaced(within_quotes(option.what), "[", "\\["), "]", "\\]");
     for (const std::string &name : option.names) {
         line += fmt::format("        '{}[{}]", name, what);
         if (!option.choices.empty())
             line += fmt::format(":{}:({})", option.type, fmt::join(option.choices, " "));
         else if (!option.type.empty())
-            line += fmt::format(":{}:_files", replaced(quoted(option.type), ":", "\\:"));
+            line += fmt::format(":{}:_files", replaced(within_quotes(option.type), ":", "\\:"));
         line += "' \\\n";
     }
     return line;
@@ -132,8 +132,8 @@ std::string zsh_completion(const HelpTable &table) {
     std::string commands, cases, everywhere;
     for (const HelpOption &option : table.everywhere) everywhere += zsh_option(option);
     for (const HelpCommand &command : table.commands) {
-        commands +=
-            fmt::format("    '{}:{}'\n", command.name, replaced(quoted(command.what), ":", "\\:"));
+        commands += fmt::format("    '{}:{}'\n", command.name,
+                                replaced(within_quotes(command.what), ":", "\\:"));
         cases += fmt::format("    {}) _arguments \\\n", command.name);
         for (const HelpOption &option : command.options) cases += zsh_option(option);
         cases += everywhere + "        '*:file:_files' ;;\n";

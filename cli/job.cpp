@@ -35,7 +35,7 @@ bool is_locked(const fs::path &file) {
 }
 
 // What a manifest says, in the ranges of the options that `farm` takes: it may come from anywhere.
-struct Reader {
+struct JobReader {
     const Json &json;
     std::string wrong = ""; // the first entry that is none
 
@@ -127,7 +127,7 @@ std::optional<Job> read_job(const fs::path &folder, std::string &error) {
     try {
         const Json json = Json::parse(*text);
         std::error_code none;
-        Reader read{json};
+        JobReader read{json};
         Job job;
         job.folder = fs::canonical(folder, none);
         job.engine = json.at("engine") == "slurm" ? Engine::Slurm : Engine::Parallel;
