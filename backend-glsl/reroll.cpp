@@ -30,24 +30,25 @@ constexpr double whole_floats = 16777216; // ints up to here are floats too
 // Operands that differ in constants only: which, and where each constant stands that differs.
 struct Kind {
     std::vector<std::size_t> members;
-    std::vector<std::vector<Constant>> rows; // by member
-    std::vector<int> column;                 // by constant: in the table; -1: the same in all
+    std::vector<ir::Row> rows; // by member
+    std::vector<int> column;   // by constant: in the table; -1: the same in all
     std::size_t size = 0;
 };
 
 // Gives each kind's differing constants columns from `first` on. The number of columns.
-int lay_out(std::vector<Kind> &kinds, int first) {
+int lay_out(const Graph &graph, std::vector<Kind> &kinds, int first) {
     int columns = first;
     for (Kind &kind : kinds) {
         const std::vector<bool> all(kind.rows[0].size(), true);
-        columns = std::max(columns, ir::lay_out(kind.rows, all, first, kind.column));
+        columns = std::max(columns, ir::lay_out(graph, kind.rows, all, first, kind.column));
     }
     return columns;
 }
 
 // Whether tables hold the constants: ints as floats.
-bool fits(const std::vector<Constant> &row) {
-    return std::ranges::all_of(row, [](const Constant &constant) {
+bool fits(const Graph &graph, const ir::Row &row) {
+    return std::ranges::all_of(row, [&](NodeId id) {
+        const Constant constant = graph.constant_of(id);
         return constant.type != Type::Int || std::fabs(constant.value[0]) <= whole_floats;
     });
 }
@@ -69,7 +70,7 @@ std::optional<NodeId> loop_of(Graph &graph, NodeId id) {
         args[i] = operand.root;
         ir::Skeleton skeleton;
         if (!operand.all || !ir::take_apart(graph, args[i], largest_operand, skeleton) ||
-            !fits(skeleton.row))
+            !fits(graph, skeleton.row))
             return std::nullopt;
         const std::size_t size = skeleton.words.size();
         const auto [it, fresh] = kind_of.try_emplace(std::move(skeleton.words), kinds.size());
@@ -86,7 +87,7 @@ std::optional<NodeId> loop_of(Graph &graph, NodeId id) {
         return std::nullopt;
     ir::Table table;
     table.rows = static_cast<int>(args.size() - first);
-    table.stride = lay_out(kinds, mixed ? 1 : 0);
+    table.stride = lay_out(graph, kinds, mixed ? 1 : 0);
     if (table.stride == 0 || table.stride > ir::max_columns) return std::nullopt;
     table.data.assign(static_cast<std::size_t>(table.rows) * static_cast<std::size_t>(table.stride),
                       0.0f);
@@ -95,7 +96,7 @@ std::optional<NodeId> loop_of(Graph &graph, NodeId id) {
             float *row =
                 table.data.data() + kinds[k].members[m] * static_cast<std::size_t>(table.stride);
             if (mixed) row[0] = static_cast<float>(k);
-            ir::fill_row(kinds[k].rows[m], kinds[k].column, row);
+            ir::fill_row(graph, kinds[k].rows[m], kinds[k].column, row);
         }
     ir::Loop loop;
     loop.count = graph.integer(table.rows);

@@ -73,16 +73,13 @@ int main(int argc, char **argv) {
         const char *name;
         void (*measure)(Table &);
     };
-    constexpr Group groups[] = {{"process", measure_process},
-                                {"front-end", measure_front_end},
-                                {"reload", measure_reload},
-                                {"shader", measure_shader},
-                                {"by-hand", measure_hand_written},
-                                {"many", measure_instances},
-                                {"steps", measure_steps},
-                                {"noise-cache", measure_noise_cache},
-                                {"interpreter", measure_interpreter},
-                                {"pruning", measure_pruning}};
+    constexpr Group groups[] = {
+        {"process", measure_process},         {"front-end", measure_front_end},
+        {"reload", measure_reload},           {"shader", measure_shader},
+        {"by-hand", measure_hand_written},    {"many", measure_instances},
+        {"growth", measure_growth},           {"steps", measure_steps},
+        {"noise-cache", measure_noise_cache}, {"interpreter", measure_interpreter},
+        {"pruning", measure_pruning}};
     const std::vector<std::string> wanted(argv + 1, argv + argc);
     for (const std::string &name : wanted)
         if (std::none_of(std::begin(groups), std::end(groups),
@@ -90,7 +87,7 @@ int main(int argc, char **argv) {
             std::fprintf(
                 stderr,
                 "fathom-bench: no group `%s`; there are process, front-end, reload, shader, "
-                "by-hand, many, steps, noise-cache, interpreter, pruning\n",
+                "by-hand, many, growth, steps, noise-cache, interpreter, pruning\n",
                 name.c_str());
             return 2;
         }

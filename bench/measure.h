@@ -60,6 +60,7 @@ void measure_process(Table &table);      // process.cpp
 void measure_pruning(Table &table);      // pruning.cpp
 void measure_front_end(Table &table);    // front_end.cpp
 void measure_instances(Table &table);    // many.cpp
+void measure_growth(Table &table);       // growth.cpp
 void measure_reload(Table &table);       // reload.cpp
 void measure_shader(Table &table);       // shader.cpp
 void measure_hand_written(Table &table); // hand_written.cpp

@@ -23,8 +23,9 @@ constexpr std::uint32_t tallest_tree = 1024;
 Builder::Builder(const Source &source, SourceId id, const Tokens &tokens, Diagnostics &diagnostics)
     : ForeignSyntax(source, id, tokens, diagnostics) {
     ast_.source = id;
-    ast_.exprs.reserve(tokens.tokens.size() / 2);
-    expr_heights_.reserve(tokens.tokens.size() / 2);
+    // An expression has a word of its own, so that no room is made twice. What is not used stays the system's.
+    ast_.exprs.reserve(tokens.tokens.size());
+    expr_heights_.reserve(tokens.tokens.size());
     stmt_marks_.push_back(0); // the file is a block
 }
 

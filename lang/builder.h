@@ -156,10 +156,6 @@ class Builder : ForeignSyntax {
         bool outer_in_function;
         Span span;
     };
-    struct Statement {
-        Stmt stmt;
-        std::uint32_t height;
-    };
 
     using TokenReading::span;
     Span span(const Item &item) const { return {id_, item.begin, item.end}; }
@@ -210,11 +206,11 @@ class Builder : ForeignSyntax {
     std::vector<Head> heads_;
     std::vector<IfBranch> branches_;
     std::vector<std::size_t> branch_marks_;
-    std::vector<Statement> stmts_;
+    std::vector<Stmt> stmts_;
     std::vector<std::size_t> stmt_marks_;
     std::vector<BlockId> blocks_;
     std::vector<Index> remembered_;
-    std::vector<std::uint32_t> expr_heights_, block_heights_;
+    std::vector<std::uint32_t> expr_heights_, stmt_heights_, block_heights_;
     std::size_t depth_ = 0;
     bool expression_body_ = false;      // of the function whose body was just read
     std::uint32_t last_too_tall_ = ~0u; // where the chain began that was reported

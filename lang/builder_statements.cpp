@@ -12,19 +12,29 @@ namespace fathom::lang {
 // -- blocks --------------------------------------------------------------------------------------
 
 void Builder::add_stmt(StmtKind kind, Span span, std::uint32_t height) {
-    stmts_.push_back({{std::move(kind), span}, height});
+    stmts_.push_back({std::move(kind), span});
+    stmt_heights_.push_back(height);
 }
 
 BlockId Builder::add_block(std::size_t first_stmt, Span span) {
     Block block;
     block.span = span;
-    block.stmts.reserve(stmts_.size() - first_stmt);
     std::uint32_t tallest = 0;
-    for (std::size_t i = first_stmt; i < stmts_.size(); ++i) {
-        tallest = std::max(tallest, stmts_[i].height);
-        block.stmts.push_back(std::move(stmts_[i].stmt));
+    for (std::size_t i = first_stmt; i < stmts_.size(); ++i)
+        tallest = std::max(tallest, stmt_heights_[i]);
+    stmt_heights_.resize(first_stmt);
+    const auto first = stmts_.begin() + static_cast<std::ptrdiff_t>(first_stmt);
+    const auto inner = std::make_move_iterator(first),
+               outer = std::make_move_iterator(stmts_.begin());
+    constexpr std::size_t many = 1000; // of which there is no room for a copy
+    if (stmts_.size() > many && first_stmt < stmts_.size() / 2) {
+        std::vector<Stmt> around(outer, inner);
+        stmts_.erase(stmts_.begin(), first);
+        block.stmts = std::exchange(stmts_, std::move(around));
+    } else {
+        block.stmts.assign(inner, std::make_move_iterator(stmts_.end()));
+        stmts_.erase(first, stmts_.end());
     }
-    stmts_.erase(stmts_.begin() + static_cast<std::ptrdiff_t>(first_stmt), stmts_.end());
     block_heights_.push_back(1 + tallest);
     return ast_.blocks.add(std::move(block));
 }
@@ -319,6 +329,7 @@ void Builder::drop(const Mark &mark) {
     cut(branches_, mark.branches);
     cut(branch_marks_, mark.branch_marks);
     cut(stmts_, mark.stmts);
+    cut(stmt_heights_, mark.stmts);
     cut(stmt_marks_, mark.stmt_marks);
     cut(blocks_, mark.blocks);
     cut(remembered_, mark.remembered);

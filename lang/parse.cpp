@@ -484,6 +484,7 @@ Ast parse_part(const Sources &sources, SourceId id, std::uint32_t begin, std::ui
     Words read = read_words(source, id, begin, end, diagnostics, most_words);
     const Tokens tokens = lay_out(source, id, read, diagnostics);
     if (words) *words = std::move(read);
+    read = {}; // the tree takes its room
     Builder builder(source, id, tokens, diagnostics);
     grammar::Input in(tokens.kinds);
     pegtl::parse<grammar::file, grammar::action, grammar::control>(in, builder);

@@ -149,24 +149,24 @@ void region_nodes(const ir::Region &r, std::vector<NodeId> &out) {
 // The columns that differ, as a table: of those that evaluators read (stated: false), or of the
 // library's statements, so that a shader holds the first alone. Fills `replacement` for the columns
 // it took.
-bool add_columns(Interpreter &ev, const std::vector<std::vector<ir::Constant>> &rows,
-                 const std::vector<bool> &wanted, NodeId index, std::vector<NodeId> &replacement) {
+bool add_columns(Interpreter &ev, const std::vector<ir::Row> &rows, const std::vector<bool> &wanted,
+                 NodeId index, std::vector<NodeId> &replacement) {
     ir::Graph &g = ev.scene.graph;
     ir::Table table;
     std::vector<int> column;
     table.rows = static_cast<int>(rows.size());
-    table.stride = ir::lay_out(rows, wanted, 0, column);
+    table.stride = ir::lay_out(g, rows, wanted, 0, column);
     if (table.stride > ir::max_columns) return false;
     if (table.stride == 0) return true;
     const auto stride = static_cast<std::size_t>(table.stride);
     table.data.resize(rows.size() * stride);
     for (std::size_t r = 0; r < rows.size(); ++r)
-        ir::fill_row(rows[r], column, table.data.data() + r * stride);
+        ir::fill_row(g, rows[r], column, table.data.data() + r * stride);
     ir::TableId id = g.add_table(std::move(table));
     for (std::size_t c = 0; c < column.size(); ++c)
         if (column[c] >= 0)
             replacement[c] =
-                ir::read_table(g, rows[0][c].type, index, ir::table_slot(id, column[c]));
+                ir::read_table(g, g.type(rows[0][c]), index, ir::table_slot(id, column[c]));
     return true;
 }
 
@@ -188,8 +188,8 @@ ir::InstanceTable instance_table_of(Interpreter &ev, std::size_t count, bool smo
 }
 
 ShapeId make_instance_table(Interpreter &ev, const std::vector<ShapeId> &members,
-                            const std::vector<std::vector<ir::Constant>> &rows,
-                            const std::vector<bool> &stated, bool smooth, NodeId k, int dims) {
+                            const std::vector<ir::Row> &rows, const std::vector<bool> &stated,
+                            bool smooth, NodeId k, int dims) {
     const ir::InstanceTable instance_table = instance_table_of(ev, members.size(), smooth);
     std::vector<NodeId> replacement(rows[0].size());
     std::vector<bool> read = stated;
@@ -283,7 +283,7 @@ std::vector<ShapeId> gather_instances(Interpreter &ev, std::vector<ShapeId> shap
     if (shapes.size() < min_instances) return shapes;
     struct Group {
         std::vector<std::size_t> members;
-        std::vector<std::vector<ir::Constant>> rows;
+        std::vector<ir::Row> rows;
         std::vector<bool> stated;
     };
     std::vector<bool> taken(shapes.size(), false);
@@ -343,7 +343,7 @@ std::optional<ShapeId> smooth_instances(Interpreter &ev, const std::vector<Shape
         ev.scene.shapes.listed.emplace(*iterations, shapes);
         return iterations;
     }
-    std::vector<std::vector<ir::Constant>> rows;
+    std::vector<ir::Row> rows;
     std::vector<std::uint64_t> skeleton;
     std::vector<bool> stated;
     for (ShapeId s : shapes) {

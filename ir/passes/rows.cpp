@@ -15,7 +15,7 @@ bool take_apart(const Graph &graph, NodeId id, std::size_t maximum, Skeleton &ou
         static_cast<std::uint64_t>(node.op) << 56 | static_cast<std::uint64_t>(node.type) << 48 |
         static_cast<std::uint64_t>(node.count) << 32 | (node.op == Op::Const ? 0 : node.payload));
     if (node.op == Op::Const) {
-        out.row.push_back(graph.constant_of(id));
+        out.row.push_back(id);
         return true;
     }
     return std::ranges::all_of(graph.args(id),
@@ -31,30 +31,31 @@ NodeId put_together(Graph &graph, NodeId id, const OtherConstant &other, std::si
     return graph.make(node.op, node.type, args, node.payload);
 }
 
-bool same(const Constant &a, const Constant &b) { return a.type == b.type && a.value == b.value; }
-
-int lay_out(const std::vector<std::vector<Constant>> &rows, const std::vector<bool> &wanted,
+int lay_out(const Graph &graph, const std::vector<Row> &rows, const std::vector<bool> &wanted,
             int first, std::vector<int> &column) {
     const auto equal = [&](std::size_t a, std::size_t b) {
-        return std::ranges::all_of(rows, [&](const auto &row) { return same(row[a], row[b]); });
+        return std::ranges::all_of(rows, [&](const Row &row) { return row[a] == row[b]; });
     };
     column.assign(rows[0].size(), -1);
     for (std::size_t c = 0; c < column.size(); ++c) {
         const bool differs =
-            !std::ranges::all_of(rows, [&](const auto &row) { return same(row[c], rows[0][c]); });
+            !std::ranges::all_of(rows, [&](const Row &row) { return row[c] == rows[0][c]; });
         if (!wanted[c] || !differs) continue;
         std::size_t twin = 0;
         while (twin < c && (column[twin] < 0 || !equal(twin, c))) ++twin;
         column[c] = twin < c ? column[twin] : first;
-        if (twin == c) first += components(rows[0][c].type);
+        if (twin == c) first += components(graph.type(rows[0][c]));
     }
     return first;
 }
 
-void fill_row(const std::vector<Constant> &row, const std::vector<int> &column, float *out) {
-    for (std::size_t c = 0; c < row.size(); ++c)
-        for (int i = 0; column[c] >= 0 && i < components(row[c].type); ++i)
-            out[column[c] + i] = static_cast<float>(row[c].value[static_cast<std::size_t>(i)]);
+void fill_row(const Graph &graph, const Row &row, const std::vector<int> &column, float *out) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
+        if (column[c] < 0) continue;
+        const Constant constant = graph.constant_of(row[c]);
+        for (int i = 0; i < components(constant.type); ++i)
+            out[column[c] + i] = static_cast<float>(constant.value[static_cast<std::size_t>(i)]);
+    }
 }
 
 NodeId read_table(Graph &graph, Type type, NodeId row, std::uint32_t slot) {

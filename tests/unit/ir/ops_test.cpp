@@ -180,7 +180,7 @@ TEST_CASE("expressions that differ in constants are one with rows") {
     };
     std::vector<NodeId> balls{ball(1, 2, 3), ball(4, 5, 6), ball(7, 5, 6)};
     std::vector<Skeleton> parts(balls.size());
-    std::vector<std::vector<Constant>> rows;
+    std::vector<Row> rows;
     for (std::size_t i = 0; i < balls.size(); ++i) {
         REQUIRE(take_apart(g, balls[i], 100, parts[i]));
         CHECK(parts[i].words == parts[0].words);
@@ -196,10 +196,10 @@ TEST_CASE("expressions that differ in constants are one with rows") {
     const std::vector<bool> all(rows[0].size(), true);
     Table table;
     table.rows = 3;
-    table.stride = lay_out(rows, all, 0, column);
+    table.stride = lay_out(g, rows, all, 0, column);
     CHECK(table.stride == 4); // a centre and a radius
     table.data.resize(12);
-    for (std::size_t r = 0; r < 3; ++r) fill_row(rows[r], column, &table.data[4 * r]);
+    for (std::size_t r = 0; r < 3; ++r) fill_row(g, rows[r], column, &table.data[4 * r]);
     const TableId data = g.add_table(table);
     for (int r = 0; r < 3; ++r) {
         const auto read = [&](std::size_t c, NodeId constant) {
@@ -216,9 +216,8 @@ TEST_CASE("expressions that differ in constants are one with rows") {
               Approx(reference.number(balls[static_cast<std::size_t>(r)])));
     }
     // Columns that nobody wants stand in no table; equal ones stand once.
-    CHECK(lay_out(rows, std::vector<bool>(rows[0].size(), false), 0, column) == 0);
-    const std::vector<std::vector<Constant>> twins{{rows[0][0], rows[0][0]},
-                                                   {rows[1][0], rows[1][0]}};
-    CHECK(lay_out(twins, {true, true}, 7, column) == 7 + components(rows[0][0].type));
+    CHECK(lay_out(g, rows, std::vector<bool>(rows[0].size(), false), 0, column) == 0);
+    const std::vector<Row> twins{{rows[0][0], rows[0][0]}, {rows[1][0], rows[1][0]}};
+    CHECK(lay_out(g, twins, {true, true}, 7, column) == 7 + components(g.type(rows[0][0])));
     CHECK(column[0] == column[1]);
 }
