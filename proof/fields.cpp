@@ -220,6 +220,19 @@ bool reads_list_by_point(const ir::Graph &graph, const std::vector<NodeId> &root
     return false;
 }
 
+constexpr ir::OpSet told_of{Op::Floor, Op::Round, Op::Ceil, Op::Fract, Op::Mod, Op::Hash};
+
+// What makes the sides of a border agree, by what turns there.
+std::string way_to_meet(const std::optional<Op> &cause) {
+    if (!cause || !told_of[*cause]) return "make both sides agree there, ";
+    if (*cause == Op::Hash)
+        return "give `hash` the number of the cell by `floor` or `round`, as in `hash(floor(p))`: "
+               "what is left of `p - q` is another number at each point for rounding; ";
+    return "where copies differ from cell to cell keep the distance below the way to the next "
+           "copy, as in `min(d, 0.2)`, or let `repeat` look at the neighbours: "
+           "`.repeat([1, 0, 0], (s, id) => …)`; ";
+}
+
 } // namespace
 
 void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &what) {
@@ -269,14 +282,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             "go from one entry of a list to the next without a jump, with the place limited before "
             "`floor`: `let x = clamp(…, 0, last)`, then `mix(list[int(floor(x))], "
             "list[int(floor(x)) + 1], fract(x))`; ";
-        constexpr ir::OpSet steps{Op::Floor, Op::Round, Op::Ceil, Op::Fract, Op::Mod};
-        const bool by_cells = b.cause && steps[*b.cause];
-        const std::string meeting =
-            by_cells
-                ? "where copies differ from cell to cell keep the distance below the way to the "
-                  "next copy, as in `min(d, 0.2)`, or let `repeat` look at the neighbours: "
-                  "`.repeat([1, 0, 0], (s, id) => …)`; "
-                : "make both sides agree there, ";
+        const std::string meeting = way_to_meet(b.cause);
         const auto [one_side, other_side] = two_points(b.side_a, b.side_b, dims);
         const auto [one, other] = two_numbers(b.value_a, b.value_b);
         const auto inexact = inexact_number(graph, scene.shapes[id].args);
@@ -307,7 +313,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                                    : ", and that its sides meet is not seen"))
                 .help(few_digits +
                       (by_list ? between
-                       : by_cells
+                       : b.cause && told_of[*b.cause]
                            ? meeting
                            : "write it with `min`, `max`, `clamp` or `abs`, whose continuity "
                              "is known, ") +

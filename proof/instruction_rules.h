@@ -203,6 +203,8 @@ struct Step {
         if (at_pole) return fail(Trouble::Singular);
         finish(ir::rounding::times(most, norm(0)), any_odd);
     }
+    // The same number at all points of the cell, also in single precision.
+    bool is_still(int arg, int c) const { return zero(grad(arg, c)) && !in.wavers; }
     bool has_pole(int arg) const { return machine.pole_[in.args[std::size_t(arg)]] != 0; }
     bool may_jump(int arg) const { // of itself, so that it need not pass a choice's border
         return norm(arg) == ir::rounding::infinity || any_odd;
@@ -224,7 +226,7 @@ struct Step {
                 if (v.is_point()) narrow(0, c, where(v.lo));
                 continue;
             }
-            jumps = jumps || (!v.is_point() && !zero(grad(0, c)));
+            jumps = jumps || (!v.is_point() && !is_still(0, c));
             set(c, v, none);
         }
         // what jumps of itself need not pass a border of the step
@@ -239,7 +241,7 @@ struct Step {
         constexpr Interval all = Interval::everything();
         double norms = 0;
         for (int a = 0; a < int(in.args.size()); ++a) norms = std::max(norms, norm(a));
-        const bool turns = !v.is_point() && (norms > 0 || any_odd);
+        const bool turns = !v.is_point() && (norms > 0 || any_odd || in.wavers);
         set(0, v, turns ? Row{all, all, all} : none);
         if (turns && (norms == ir::rounding::infinity || any_odd)) return fail(Trouble::Jump);
         finish(turns ? 1 : 0, false);

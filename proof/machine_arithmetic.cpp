@@ -131,6 +131,7 @@ void Step::remainder() {
             continue;
         }
         if (in.scatters && norm(0) == 0 && norm(1) == 0) {
+            jumps = jumps || in.wavers;
             set(c, all(m), none);
             continue;
         }
@@ -147,7 +148,7 @@ void Step::remainder() {
             set(c, x - m * turns, sum(grad(0, c), scaled(-turns, grad(1, c))));
             continue;
         }
-        jumps = jumps || !zero(grad(1, c)) || (!cancels() && !zero(grad(0, c)));
+        jumps = jumps || !zero(grad(1, c)) || (!cancels() && !is_still(0, c));
         set(c, all(m), grad(0, c));
     }
     if (is_int()) return settle_int();

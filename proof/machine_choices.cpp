@@ -143,7 +143,8 @@ void Step::step_at() {
         },
         [](double) { return Interval::everything(); });
     if (by_ways()) return;
-    const bool turns = cancels() ? may_jump(0) || may_jump(1) : norm(0) > 0 || norm(1) > 0;
+    const bool turns =
+        cancels() ? may_jump(0) || may_jump(1) : norm(0) > 0 || norm(1) > 0 || in.wavers;
     if (turns && !is_one_value()) fail(Trouble::Jump);
 }
 
@@ -185,6 +186,7 @@ void Step::fraction() {
         constexpr double most = 1000; // … of which single precision has the fraction to 1/10'000
         Interval x = value(0, c), whole = floor(x);
         if (norm(0) == 0 && (in.scatters || x.magnitude() > most)) {
+            jumps = jumps || in.wavers;
             set(c, {0, 1}, none);
             continue;
         }
@@ -198,7 +200,7 @@ void Step::fraction() {
         if (whole.is_point() && whole.finite())
             set(c, x - whole, grad(0, c));
         else {
-            jumps = jumps || (!cancels() && !zero(grad(0, c)));
+            jumps = jumps || (!cancels() && !is_still(0, c));
             set(c, {0, 1}, grad(0, c));
         }
     }

@@ -89,7 +89,8 @@ void Step::read() {
 
 void Step::hash() {
     bool fixed = true;
-    for (int c = 0; c < size(0); ++c) fixed = fixed && zero(grad(0, c));
+    for (int c = 0; c < size(0); ++c)
+        fixed = fixed && zero(grad(0, c)) && (!in.wavers || value(0, c).is_point());
     set(0, {0, 1}, none);
     if (!fixed || norm(0) > 0) return fail(Trouble::Jump);
     finish(0, any_odd);

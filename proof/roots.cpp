@@ -266,8 +266,6 @@ std::optional<NodeId> rounded_sizes(Graph &graph, NodeId id) {
     return {};
 }
 
-namespace {
-
 std::vector<NodeId> nodes_below(const Graph &graph, NodeId root) {
     constexpr std::size_t max_nodes = 1500;
     std::vector<NodeId> todo{root}, nodes;
@@ -281,6 +279,8 @@ std::vector<NodeId> nodes_below(const Graph &graph, NodeId root) {
     }
     return nodes;
 }
+
+namespace {
 
 // Written anew until nothing changes: choices may read one another.
 template <class Rewrite> NodeId in_rounds(NodeId root, Rewrite rewrite) {
@@ -306,51 +306,10 @@ NodeId with_some_squares_compared(Graph &graph, NodeId root) {
     return map.empty() ? root : ir::substitute(graph, root, map);
 }
 
-// The one choice of vectors that a vector is made of, by component or whole.
-NodeId choice_in(const Graph &graph, NodeId vector, int depth = 0) {
-    constexpr int max_depth = 6;
-    constexpr ir::OpSet made{Op::Make, Op::Swizzle, Op::Add, Op::Sub, Op::Mul, Op::Div, Op::Neg};
-    if (graph[vector].op == Op::Select && ir::is_vector(graph.type(vector))) return vector;
-    if (!made[graph[vector].op] || depth > max_depth) return {};
-    NodeId found;
-    for (NodeId arg : graph.args(vector)) {
-        const NodeId own = choice_in(graph, arg, depth + 1);
-        if (own && found && own != found) return {};
-        if (own) found = own;
-    }
-    return found;
-}
-
-// One choice of each vector: of several vectors the length is a choice among lengths that are such
-// choices themselves, as is its square in what is compared.
-NodeId with_a_choice_of_lengths(Graph &graph, NodeId root, Work &work) {
-    ir::Substitution map;
-    for (NodeId id : nodes_below(graph, root)) {
-        const ir::Node node = graph[id];
-        const bool is_square = node.op == Op::Dot && graph.arg(id, 0) == graph.arg(id, 1);
-        if (node.op != Op::Length && !is_square) continue;
-        const NodeId choice = choice_in(graph, graph.arg(id, 0));
-        if (!choice) continue;
-        const NodeId condition = graph.arg(choice, 0), first = graph.arg(choice, 1),
-                     second = graph.arg(choice, 2);
-        if (!graph.reads(condition).point || arms_agree(graph, condition, first, second, work))
-            continue;
-        const NodeId a = ir::substitute(graph, id, {{choice, first}}),
-                     b = ir::substitute(graph, id, {{choice, second}});
-        if (arms_agree(graph, condition, a, b, work))
-            map[id] = graph.make(Op::Select, {condition, a, b});
-    }
-    return map.empty() ? root : ir::substitute(graph, root, map);
-}
-
 } // namespace
 
 NodeId with_squares_compared(Graph &graph, NodeId root) {
     return in_rounds(root, [&](NodeId now) { return with_some_squares_compared(graph, now); });
-}
-
-NodeId with_chosen_lengths(Graph &graph, NodeId root, Work &work) {
-    return in_rounds(root, [&](NodeId now) { return with_a_choice_of_lengths(graph, now, work); });
 }
 
 NodeId with_signed_roots(Graph &graph, NodeId root) {

@@ -10,6 +10,9 @@
 
 namespace fathom::proof {
 
+// What an expression is made of and it itself, calls and loops as one; not all of a large one.
+std::vector<ir::NodeId> nodes_below(const ir::Graph &graph, ir::NodeId root);
+
 // sqrt of a choice of sums of squares as the choice of the roots, so that each is a length: of min,
 // max, `if`, plus what is the same for both, times a number.
 struct RootOfChoice {
@@ -31,10 +34,6 @@ ir::NodeId with_signed_roots(ir::Graph &graph, ir::NodeId root);
 
 // |u| < |v| as |u|^2 < |v|^2, which is made of products, all over the expression below `root`.
 ir::NodeId with_squares_compared(ir::Graph &graph, ir::NodeId root);
-
-// The length of one of two vectors, or of a vector that has its components, where the lengths alone
-// agree where the choice turns: as the choice of the lengths, all over the expression below `root`.
-ir::NodeId with_chosen_lengths(ir::Graph &graph, ir::NodeId root, Work &work);
 
 // A truth as a number that something else is multiplied by, `float(u > 0) * f`: as the choice of 1 and
 // 0, all over the expression below `root`.

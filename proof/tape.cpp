@@ -11,6 +11,8 @@
 #include "proof/machine.h"
 #include "proof/polar.h"
 #include "proof/roots.h"
+#include "proof/searches.h"
+#include "proof/steadiness.h"
 
 #include <algorithm>
 #include <cmath>
@@ -324,7 +326,8 @@ Tape flattened(Flattening &context, NodeId root, bool unwound, const Cell *regio
     if (unwound) root = ir::without_loops(context.graph, root, max_nodes_unwound).root;
     root = with_chosen_factors(context.graph, root);
     root = with_half_waves(context.graph, with_squares_compared(context.graph, root));
-    root = with_chosen_lengths(context.graph, root, context.work);
+    root = with_chosen_lengths(context.graph, root, region ? &region->p : nullptr, context.ranges,
+                               context.work);
     const bool steps = has_steps(context.graph, root),
                choices = context.borders && has_choices(context.graph, root);
     if (steps || choices) {
@@ -354,6 +357,7 @@ Tape flattened(Flattening &context, NodeId root, bool unwound, const Cell *regio
     Scope scope;
     scope.block = &flattener.tape.each;
     flattener.tape.result = flattener.slot(scope, root);
+    if (!flattener.tape.too_large) mark_wavering(flattener.tape);
     return std::move(flattener.tape);
 }
 

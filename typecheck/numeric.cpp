@@ -2,6 +2,7 @@
 // folding (so that an op has one meaning); the everyday operations on plain numbers have a short
 // way. What is not known becomes a node.
 #include "ir/passes/walk.h"
+#include "ir/passes/without_waves.h"
 #include "typecheck/interpreter.h"
 #include "typecheck/places.h"
 #include "typecheck/remedies.h"
@@ -158,7 +159,7 @@ Value apply_op(Interpreter &ev, Op op, std::vector<Value> args, Span place, std:
         ir::NodeId node = to_node(ev, a);
         if (ir::components(widest) > 1 && ir::components(ev.scene.graph[node].type) == 1)
             node = ev.scene.graph.splat(node, widest);
-        nodes.push_back(node);
+        nodes.push_back(ir::tells_apart[op] ? ir::without_waves(ev.scene.graph, node) : node);
     }
     return from_node(ev, ev.scene.graph.make(op, nodes), is_color);
 }
@@ -255,6 +256,8 @@ static Value compare(Interpreter &ev, lang::BinaryOp op, const Value &a, const V
     ir::NodeId x = to_node(ev, whole || bools ? a : to_float(ev, a)),
                y = to_node(ev, whole || bools ? b : to_float(ev, b));
     ir::Graph &g = ev.scene.graph;
+    x = ir::without_waves(g, x);
+    y = ir::without_waves(g, y);
     switch (op) {
     case BinaryOp::Less: return from_node(ev, g.make(Op::Less, {x, y}));
     case BinaryOp::LessEqual: return from_node(ev, g.make(Op::LessEqual, {x, y}));

@@ -284,12 +284,42 @@ NodeId simple_sub(const Made &n) {
     return {};
 }
 
+// v by min(|v|, c)/|v|, c > 0, as v by c/max(|v|, c), which is a number where v is 0: `normalize(v) *
+// min(length(v), c)`, `v / length(v) * clamp(length(v), 0, c)`.
+NodeId shortened(const Made &n) {
+    for (std::size_t i = 0; i < 2; ++i) {
+        if (n.op_of(i) != Op::Splat) continue;
+        const NodeId size = n.inside(i), unit = n.args[1 - i];
+        const Node bounded = n.graph[size];
+        const auto arg = [&](int k) { return n.graph.arg(size, k); };
+        NodeId length;
+        std::optional<double> most;
+        if (bounded.op == Op::Min)
+            for (int k = 0; k < 2; ++k)
+                if (n.graph[arg(k)].op == Op::Length)
+                    length = arg(k), most = n.graph.as_number(arg(1 - k));
+        if (bounded.op == Op::Clamp && n.graph.as_number(arg(1)).value_or(1) <= 0)
+            length = arg(0), most = n.graph.as_number(arg(2));
+        if (!length || n.graph[length].op != Op::Length || !most || !(*most > 0)) continue;
+        const NodeId v = n.graph.arg(length, 0);
+        const Node of = n.graph[unit];
+        const bool is_unit = of.op == Op::Normalize && n.graph.arg(unit, 0) == v,
+                   divided = of.op == Op::Div && n.graph.arg(unit, 0) == v &&
+                             n.graph[n.graph.arg(unit, 1)].op == Op::Splat &&
+                             n.graph.arg(n.graph.arg(unit, 1), 0) == length;
+        if (!is_unit && !divided) continue;
+        const NodeId c = n.graph.number(*most);
+        return n.graph.mul(v, n.graph.div(c, n.graph.make(Op::Max, {length, c})));
+    }
+    return {};
+}
+
 NodeId simple_mul(const Made &n) {
     if (n.is(0, 1) || n.is(1, 0)) return n.args[1];
     if (n.is(1, 1) || n.is(0, 0)) return n.args[0];
     if (n.is(0, -1)) return n.make(Op::Neg, {n.args[1]});
     if (n.is(1, -1)) return n.make(Op::Neg, {n.args[0]});
-    return {};
+    return is_vector(n.type) ? shortened(n) : NodeId{};
 }
 
 NodeId simple_div(const Made &n) {
