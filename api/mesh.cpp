@@ -76,6 +76,10 @@ MeshCertificate certificate_of(const fathom::mesh::Certificate &found) {
     made.genus = found.genus;
     made.least_volume = found.least_volume;
     made.largest_volume = found.largest_volume;
+    made.least_area = found.area.lo;
+    made.largest_area = found.area.hi;
+    made.open_places = found.open_places;
+    made.open_place = found.open_place;
     made.mesh_volume = found.mesh_volume;
     made.mesh_area = found.mesh_area;
     made.rests_on = rests_on(found.used_bound);
@@ -203,6 +207,10 @@ Refusal refusal_of(fathom::mesh::Failure failure, const fathom::mesh::Point &pla
         return {MeshStatus::Endless,
                 "the solid has no end: cut it off by bounds, or in the scene, as with "
                 "`& box(10)`"};
+    case Failure::Unbounded:
+        return {MeshStatus::Endless,
+                "where the solid ends was not found by the work that is spent on it: say it by "
+                "bounds, or in the scene, as with `& box(10)`"};
     case Failure::TooFine:
         return {MeshStatus::TooFine,
                 "that is too fine: a mesh has at most 8,192 cells a side, and single "
@@ -318,7 +326,15 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
                 take_appearance(appearance_of(ir_of(scene), options.time, made.mesh, lattice.unit),
                                 mesh);
             }
-            if (options.certify) mesh.certificate = certificate_of(certificate);
+            if (options.certify) {
+                fathom::mesh::Progress progress;
+                if (options.progress) progress.report = options.progress;
+                progress.from = progress.to; // it was at its end
+                enclose_measures(ir_of(scene), settings, made, progress, certificate);
+                if (progress.cancelled) made.failure = fathom::mesh::Failure::Cancelled;
+                if (progress.cancelled) return refused(made, ir_of(scene), settings);
+                mesh.certificate = certificate_of(certificate);
+            }
             const std::vector<fathom::mesh::Cell> &undecided =
                 options.certify ? certificate.undecided : made.octree.undecided;
             list_undecided(made.octree, undecided, mesh);

@@ -90,6 +90,61 @@ std::string advice_on_pieces(const ir::Scene &scene, const fathom::mesh::Setting
                        splinters, where, shown_by(where, lattice, made.box));
 }
 
+// Of cells that stay undecided though nothing thin is seen there: where ranges and bound are loose.
+// How much smaller boxes have to be to leave surface out, in most of the cells; 0: they do not do it.
+double shrunk_to_decide(const fathom::mesh::Field &field, const fathom::mesh::Lattice &lattice,
+                        const std::vector<fathom::mesh::Cell> &cells) {
+    constexpr std::size_t looks = 64;
+    constexpr int halvings = 10;
+    using fathom::mesh::Point;
+    fathom::mesh::Evaluator evaluator(field);
+    fathom::cpu::Boxes boxes;
+    boxes.count = 16;
+    std::vector<int> needed;
+    for (std::size_t n = 0; n < std::min(looks, cells.size()); ++n) {
+        const fathom::mesh::Cell &cell = cells[n * cells.size() / std::min(looks, cells.size())];
+        const std::int32_t side = lattice.cells(cell.level);
+        const Point lo = point_of(lattice, cell.at),
+                    hi = point_of(lattice, fathom::mesh::corner(cell.at, side, 7));
+        int level = 0;
+        for (; level < halvings; ++level) {
+            double squares = 0;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const float middle = 0.5f * (lo[i] + hi[i]),
+                            half = std::ldexp(0.5f * (hi[i] - lo[i]), -level);
+                squares += double(half) * half;
+                for (std::size_t k = 0; k < boxes.count; ++k) {
+                    boxes.lo[i][k] = k < 8 ? middle - half : middle;
+                    boxes.hi[i][k] = k < 8 ? middle + half : middle;
+                }
+            }
+            ranges_over(evaluator, *field.whole, boxes);
+            if (space_of(evaluator, 0, std::sqrt(squares), lattice.ulp, true, true) !=
+                fathom::mesh::Space::Open)
+                break;
+        }
+        needed.push_back(level);
+    }
+    std::ranges::sort(needed);
+    const int most = needed.empty() ? halvings : needed[3 * needed.size() / 4];
+    return most < halvings ? std::ldexp(1.0, most) : 0;
+}
+
+// What decides such cells: a sentence.
+std::string advice_on_loose(const fathom::mesh::Field &field, const fathom::mesh::Made &made,
+                            const std::vector<fathom::mesh::Cell> &cells) {
+    const fathom::mesh::Lattice &lattice = made.octree.lattice;
+    const double times = shrunk_to_decide(field, lattice, cells);
+    const double side = lattice.side(lattice.level);
+    if (times > 1 && fathom::mesh::make_lattice(made.box, side / times, 0))
+        return fmt::format(
+            "what is proved of the field there decides it in cells {:.0f} times smaller: with a "
+            "tolerance of {:.2g}, or a bound nearer to the field's true slope",
+            times, side / times);
+    return "what is proved of the field there decides it in no cells of a mesh: a bound nearer to "
+           "its true slope does, as of shapes in place of a formula, or a part of it by itself";
+}
+
 } // namespace
 
 std::string advice_of(const ir::Scene &scene, const fathom::mesh::Settings &settings,
@@ -108,7 +163,7 @@ std::string advice_of(const ir::Scene &scene, const fathom::mesh::Settings &sett
     if (touch > thick.size())
         return "parts of the solid touch there, and rounding leaves open where each ends, which no "
                "finer mesh tells: let them overlap a little, or move them by the same transforms";
-    if (thick.empty()) return "a finer mesh or a tighter bound tells more";
+    if (thick.empty()) return advice_on_loose(field, made, cells);
     std::ranges::sort(thick);
     return fmt::format("a wall, a gap or a sharp edge there is about {:.2g} thick{}",
                        lower_quarter(thick), shown_by(lower_quarter(thick), lattice, made.box));

@@ -6,6 +6,7 @@
 #include <fathom/part_meshes.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -49,6 +50,10 @@ Json json_of(const v1::Mesh &mesh) {
         json["mesh_to_surface"] = everywhere(c->mesh_to_surface);
         json["surface_to_mesh"] = everywhere(c->surface_to_mesh);
         json["volume"] = {c->least_volume, c->largest_volume};
+        json["area"] = {c->least_area,
+                        std::isfinite(c->largest_area) ? Json(c->largest_area) : Json()};
+        if (c->open_places > 0)
+            json["area_open"] = {{"boxes", c->open_places}, {"near", c->open_place}};
     }
     json["mesh_volume"] = of.volume;
     json["mesh_area"] = of.area;
@@ -73,8 +78,13 @@ Json json_of(const v1::Mesh &mesh) {
 void say_certificate(const v1::Mesh &mesh, const std::string &what, Terminal &terminal) {
     if (!mesh.certificate) return;
     const v1::MeshCertificate &c = *mesh.certificate;
-    const std::string volume = fmt::format("the solid's volume lies between {:.6g} and {:.6g}",
-                                           c.least_volume, c.largest_volume);
+    const std::string area =
+        std::isfinite(c.largest_area)
+            ? fmt::format("between {:.6g} and {:.6g}", c.least_area, c.largest_area)
+            : fmt::format("above {:.6g} (`fathom measure` looks closer)", c.least_area);
+    const std::string volume =
+        fmt::format("the solid's volume lies between {:.6g} and {:.6g}, its area {}",
+                    c.least_volume, c.largest_volume, area);
     if (c.certified)
         terminal.say(fmt::format(
             "{}: certified: all of the mesh lies within {:.3g} of the surface, "

@@ -38,13 +38,14 @@ std::array<double, 2> share_below(double value, const std::array<double, 3> &slo
     for (std::size_t i = 0; i < 3; ++i) across[i] = 2 * std::fabs(slope[i]) * half[i];
     const double most = *std::ranges::max_element(across);
     double slack = 0, whole = 0, product = 1;
-    std::vector<double> sides;
+    std::array<double, 3> sides{};
+    std::size_t count = 0;
     for (const double a : across) {
         if (a < little * most || a == 0) {
             slack += 0.5 * a;
         } else {
-            sides.push_back(a);
-            whole += a, product *= a * static_cast<double>(sides.size());
+            sides[count++] = a;
+            whole += a, product *= a * static_cast<double>(count);
         }
     }
     const auto share = [&](double above) { // of value <= above
@@ -52,13 +53,12 @@ std::array<double, 2> share_below(double value, const std::array<double, 3> &slo
         if (t <= 0) return 0.0;
         if (t >= whole) return 1.0;
         double sum = 0;
-        for (unsigned set = 0; set < 1u << sides.size(); ++set) {
-            double rest = t;
-            for (std::size_t i = 0; i < sides.size(); ++i)
+        for (unsigned set = 0; set < 1u << count; ++set) {
+            double rest = t, power = 1;
+            for (std::size_t i = 0; i < count; ++i)
                 if (set >> i & 1) rest -= sides[i];
-            if (rest > 0)
-                sum += (std::popcount(set) % 2 ? -1 : 1) *
-                       std::pow(rest, static_cast<double>(sides.size()));
+            for (std::size_t i = 0; i < count; ++i) power *= rest;
+            if (rest > 0) sum += std::popcount(set) % 2 ? -power : power;
         }
         return std::clamp(sum / product, 0.0, 1.0);
     };

@@ -136,4 +136,16 @@ Certificate certify(const ir::Scene &scene, const Settings &settings, const Made
     return certify(Field(scene, settings.time, settings.bounds), settings, made, nullptr, progress);
 }
 
+void enclose_measures(const ir::Scene &scene, const Settings &settings, const Made &made,
+                      Progress &progress, Certificate &certificate) {
+    const Measures of = measure(scene, settings, made, progress, beside_certificate);
+    if (progress.cancelled) return; // what was not looked at is not in the sums
+    certificate.least_volume = std::max(certificate.least_volume, of.volume.lo);
+    certificate.largest_volume = std::min(certificate.largest_volume, of.volume.hi);
+    certificate.area = of.area;
+    certificate.open_places = of.open_places;
+    certificate.open_place = of.open_place;
+    certificate.used_bound = certificate.used_bound || of.used_bound;
+}
+
 } // namespace fathom::mesh

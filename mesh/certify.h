@@ -3,7 +3,9 @@
 #pragma once
 
 #include "mesh/grid.h"
-#include "mesh/mesh.h"
+#include "mesh/measure.h"
+
+#include <limits>
 
 namespace fathom::mesh {
 
@@ -28,6 +30,11 @@ struct Certificate {
     std::size_t components = 0;                  // of the mesh
     long genus = 0;                              // of all of them together
     double least_volume = 0, largest_volume = 0; // the solid's lies between them
+    // So does the surface's area, by `enclose_measures`; there is no upper end where in so many boxes,
+    // one of them about there, it is not known how the surface runs.
+    Enclosure area{0, std::numeric_limits<double>::infinity()};
+    std::size_t open_places = 0;
+    Real3 open_place{};
     double mesh_volume = 0, mesh_area = 0;
     // Whether the proofs used the proved bound, besides intervals.
     bool used_bound = false;
@@ -55,5 +62,9 @@ Certificate certify(const Field &field, const Settings &settings, const Made &ma
 // Of a mesh of that scene and those settings.
 Certificate certify(const ir::Scene &scene, const Settings &settings, const Made &made,
                     Progress &progress);
+
+// Narrows the volume, and encloses the area, as `measure` does, with a small part of its work.
+void enclose_measures(const ir::Scene &scene, const Settings &settings, const Made &made,
+                      Progress &progress, Certificate &certificate);
 
 } // namespace fathom::mesh

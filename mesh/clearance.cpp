@@ -242,7 +242,7 @@ Failure start(const ir::Scene &scene, double time, Place &node, bool &endless) {
     settings.time = time;
     ir::Box box;
     const Failure failure = box_of(scene, settings, box);
-    endless = failure == Failure::Endless;
+    endless = failure == Failure::Endless || failure == Failure::Unbounded;
     if (failure != Failure::None && !endless) return failure;
     constexpr float far = cpu::endless_from;
     for (std::size_t i = 0; i < 3; ++i) {

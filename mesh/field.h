@@ -43,6 +43,8 @@ struct Field {
 
 using TapePtr = std::shared_ptr<const cpu::ShortTape>;
 
+struct SlopeMemory; // slope_run.h
+
 // One thread's memory.
 struct Evaluator {
     explicit Evaluator(const Field &of);
@@ -53,6 +55,8 @@ struct Evaluator {
     std::vector<cpu::ShortTape> made; // by box
     Points points;                    // of boxes that are points, and their values
     std::vector<float> point_values;
+    std::shared_ptr<SlopeMemory> slopes;
+    double followed = 500; // steps of loops at most, of which slopes are wanted (slope_run.h)
 };
 
 // `out`: one number a point.

@@ -38,7 +38,7 @@ CellSums sums_of_octree(const Octree &octree, const Real3 &middle) {
 } // namespace
 
 Measures measure(const ir::Scene &scene, const Settings &settings, const Made &made,
-                 Progress &progress, double work) {
+                 Progress &progress, const MeasureEffort &effort) {
     const Octree &octree = made.octree;
     const Field field(scene, settings.time, settings.bounds);
     const Real3 middle = sums_of(made.mesh).center;
@@ -51,7 +51,7 @@ Measures measure(const ir::Scene &scene, const Settings &settings, const Made &m
                         octree.tapes[static_cast<std::size_t>(node.task)]});
     }
     sums.add(sums_of_open(field, open, {middle, octree.lattice.ulp, seam_thickness(octree.lattice)},
-                          threads_of(settings), progress, work));
+                          threads_of(settings), progress, effort));
 
     Measures measures = measures_of(sums, middle);
     measures.used_bound = field.proved;

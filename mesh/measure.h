@@ -17,12 +17,21 @@ struct Measures {
     bool used_bound = false;                  // the proved bound, besides intervals
 };
 
-inline constexpr double usual_work = 0.3e9; // kernels over boxes: a second or two
+// What measuring may take.
+struct MeasureEffort {
+    double work = 0.3e9;                           // kernels over boxes: a second or two
+    int least_halvings = 2;                        // of each open cell, whatever that takes
+    std::size_t spare = 400'000, least_spare = 32; // boxes divided more often: of all, of a cell
+    double looks = 1e12; // kernels of all open cells: where they have more no slopes are looked at,
+    double in_loops = 6e6; // … or not in the loops of each, by its share of this
+};
+// Beside a certificate: each open cell as it is, and those at edges as far as few boxes go.
+inline constexpr MeasureEffort beside_certificate{0, 0, 4'000, 0, 0.3e6, 0.1e6};
 
 // By the cells of a mesh of that scene and those settings, which are divided further as far as the
 // work goes.
 Measures measure(const ir::Scene &scene, const Settings &settings, const Made &made,
-                 Progress &progress, double work = usual_work);
+                 Progress &progress, const MeasureEffort &effort = {});
 
 // The volume and the area of a closed mesh, and the centre of what it bounds.
 struct MeshSums {

@@ -26,7 +26,7 @@ void find_open(Splitter &splitter, OpenBlock open, int levels, const Walk &walk,
 } // namespace
 
 FlatMeasures measure_flat(const Cut &cut, double thick, unsigned threads, Progress &progress,
-                          double work) {
+                          const MeasureEffort &effort) {
     FlatMeasures measures;
     ir::Box box = cut.box;
     box.lo[2] = box.hi[2] = 0;
@@ -50,7 +50,7 @@ FlatMeasures measure_flat(const Cut &cut, double thick, unsigned threads, Progre
     CellSums sums;
     std::vector<OpenBlock> open;
     find_open(splitter, {whole, cut.field.whole}, lattice->level, walk, sums, open);
-    sums.add(sums_of_open(cut.field, open, walk, threads, progress, work));
+    sums.add(sums_of_open(cut.field, open, walk, threads, progress, effort));
 
     // Of a solid that is so thick.
     const Measures all = measures_of(sums, walk.middle);

@@ -19,7 +19,7 @@ struct FlatMeasures {
 
 // `thick`: from z = -thick to thick nothing changes along z.
 FlatMeasures measure_flat(const Cut &cut, double thick, unsigned threads, Progress &progress,
-                          double work = usual_work);
+                          const MeasureEffort &effort = {});
 
 // What contours measure.
 struct ContourSums {

@@ -4,6 +4,7 @@
 #include "mesh/crumbs.h"
 #include "mesh/thin.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -168,6 +169,28 @@ Failure finish(Made &made, const Field &field, const Settings &settings, bool ag
     return failure;
 }
 
+// Whether some of the solid is seen at the end of what is searched for its box.
+bool is_seen_at(double far, const ir::Scene &scene, const Settings &settings) {
+    constexpr int looks = 33; // a side
+    const Field field(scene, settings.time, {});
+    Evaluator evaluator(field);
+    Points points;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const double end : {-far, far})
+            for (int n = 0; n < looks * looks; ++n) {
+                const auto at = [&](int k) {
+                    return static_cast<float>(far * (2.0 * k / (looks - 1) - 1));
+                };
+                Point p{};
+                p[axis] = static_cast<float>(end);
+                p[(axis + 1) % 3] = at(n / looks), p[(axis + 2) % 3] = at(n % looks);
+                points.add(p);
+            }
+    std::vector<float> values;
+    values_at(evaluator, *field.whole, points, values);
+    return std::ranges::any_of(values, [](float value) { return value <= 0; });
+}
+
 } // namespace
 
 Failure box_of(const ir::Scene &scene, const Settings &settings, ir::Box &box) {
@@ -185,7 +208,8 @@ Failure box_of(const ir::Scene &scene, const Settings &settings, ir::Box &box) {
     box = cpu::solid_box(scene, scene.distance, space, settings.time, work);
     if (box.empty()) return settings.bounds ? Failure::Outside : Failure::Empty;
     for (std::size_t i = 0; i < 3; ++i)
-        if (!known && !(box.lo[i] > -far / 2 && box.hi[i] < far / 2)) return Failure::Endless;
+        if (!known && !(box.lo[i] > -far / 2 && box.hi[i] < far / 2))
+            return is_seen_at(far, scene, settings) ? Failure::Endless : Failure::Unbounded;
     return Failure::None;
 }
 

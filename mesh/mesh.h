@@ -30,6 +30,7 @@ enum class Failure : std::uint8_t {
     Unseen,      // something may lie in it, but no corner of the finest cells
     Flat,        // nothing lies in it but sheets without thickness, where its parts only touch
     Endless,     // no box holds the solid
+    Unbounded,   // none was found by the work that is spent on it
     TooFine,     // more than 8,192 cells a side, or floats cannot tell such cells apart
     TooMany,     // cells or triangles than can be counted
     Contradicted // signs are not as was proved

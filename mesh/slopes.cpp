@@ -1,64 +1,15 @@
 #include "mesh/slopes.h"
 
-#include "mesh/varying.h"
-
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 namespace fathom::mesh {
 namespace {
 
-using cpu::Kernel;
-
 constexpr double inward = 1 - 1e-6;    // what sums of doubles may take
 constexpr std::size_t most_levels = 9; // that are chosen
 constexpr double along_gradient = 0.9; // the cosine from where a number may vary as the field does
-
-// What is known of numbers by slot: the registers of a tape, and what all points share.
-struct Slopes {
-    const cpu::PruneProgram &parts;
-    const cpu::Shortener &ranges;
-    std::vector<Varying> by_slot;
-    std::vector<Zeros> zeros; // by slot; empty: they are not wanted
-
-    bool shared(std::uint32_t address) const { return address < parts.program->first_register; }
-    std::size_t slot(std::uint32_t address) const {
-        const std::size_t first = parts.program->first_register;
-        return address < first ? address : first + (address - first) / cpu::batch_size;
-    }
-    Varying at(std::uint32_t address) const {
-        Varying found = by_slot[slot(address)];
-        if (shared(address)) found = {}, found.known = true;
-        // Of its floats and of the real number.
-        found.range = {ranges.lo[address] - found.error, ranges.hi[address] + found.error};
-        found.known = found.known && std::isfinite(found.range.lo) && std::isfinite(found.range.hi);
-        return found;
-    }
-    Zeros zeros_at(std::uint32_t address) const {
-        if (ranges.lo[address] > 0 || ranges.hi[address] < 0) return {true, {}};
-        return shared(address) ? Zeros{} : zeros[slot(address)];
-    }
-};
-
-// Of the number in a slot, and at the middle of the box.
-Linear linear_of(const Varying &number, Interval middle, const Point &lo, const Point &hi) {
-    const Point at = middle_point(lo, hi);
-    Linear linear{0.5 * (middle.lo + middle.hi),
-                  0.5 * (middle.hi - middle.lo) + 2 * (number.error + 2 * number.beyond),
-                  {},
-                  {}};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Interval slope = number.slope[i];
-        const double reach = std::max(double(hi[i]) - at[i], double(at[i]) - lo[i]);
-        linear.slope[i] = 0.5 * (slope.lo + slope.hi);
-        linear.spread[i] = 0.5 * (slope.hi - slope.lo) * (1 + 1e-9) + 1e-9 * size(slope);
-        linear.off += 0.5 * (slope.hi - slope.lo) * reach;
-    }
-    linear.off *= 1 + 1e-9;
-    return linear;
-}
 
 // The axis along which a number changes fastest for sure.
 double least_slope(const Varying &number) {
@@ -166,110 +117,6 @@ Tie tie_of(const Level &level, const Level &other, const Point &lo, const Point 
 
 namespace {
 
-// Runs a tape over a box, and at its middle, step by step: what each number is that it writes.
-Slopes slopes_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
-                   const Point &lo, const Point &hi,
-                   const std::function<void(Register, const Varying &)> &see,
-                   const std::array<double, 3> &along = {}, bool zeros = false) {
-    const Field &field = evaluator.field;
-    boxes.count = 16; // of which the first is looked at, and the second: its middle
-    const Point middle = middle_point(lo, hi);
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k < boxes.count; ++k) {
-            boxes.lo[i][k] = k == 1 ? middle[i] : lo[i];
-            boxes.hi[i][k] = k == 1 ? middle[i] : hi[i];
-        }
-    cpu::enter_boxes(field.parts, evaluator.ranges, boxes);
-    Slopes slopes{field.parts, evaluator.ranges, std::vector<Varying>(field.parts.slot_count), {}};
-    if (zeros) slopes.zeros.resize(field.parts.slot_count);
-    std::vector<Zeros> by_id(1);
-    std::uint32_t ids = 0; // that are given
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        Varying &input = slopes.by_slot[slopes.slot(field.program.params[axis].address)];
-        input.known = true;
-        input.slope[axis] = {1, 1};
-        input.slope[3] = {along[axis], along[axis]};
-        input.id = ++ids;
-        by_id.emplace_back();
-    }
-    std::vector<Varying> in;
-    const cpu::Selection whole = tape.selection(field.parts);
-    std::size_t loops = 0; // before the step at hand: they have rows of their own
-    for (std::size_t k = 0; k < tape.steps.size(); ++k) {
-        const std::uint32_t id = tape.steps[k];
-        const cpu::Step &step = field.parts.table[id];
-        const cpu::Part &part = field.parts.parts[id];
-        const std::uint32_t *operands = field.parts.operands.data() + step.operands;
-        std::array<Varying, 2> made;
-        const bool waves = step.kind == cpu::StepKind::Run &&
-                           cpu::kernel_of_variant(step.target) == Kernel::SinCos;
-        const bool plain =
-            step.kind == cpu::StepKind::Run && !step.once && part.writes == (waves ? 2u : 1u);
-        if (plain) {
-            in.clear();
-            for (std::uint32_t n = part.writes; n < part.operands; ++n)
-                in.push_back(slopes.at(operands[n]));
-            if (waves)
-                made = {wave_of(in[0], false), wave_of(in[0], true)};
-            else
-                made[0] = through(cpu::kernel_of_variant(step.target), in);
-            for (const Varying &one : in) {
-                made[0].jumps = made[0].jumps || (one.jumps && one.range.lo < one.range.hi);
-                made[0].beyond += one.beyond;
-            }
-            if (waves) made[1].jumps = made[0].jumps, made[1].beyond = made[0].beyond;
-        }
-        std::vector<Operand> of; // the kernel's inputs
-        std::vector<Zeros> their;
-        if (zeros && plain) {
-            their.reserve(in.size());
-            for (std::uint32_t n = part.writes; n < part.operands; ++n) {
-                const std::uint32_t at = operands[n];
-                their.push_back(slopes.zeros_at(at));
-                of.push_back({at, &in[n - part.writes], &their.back()});
-            }
-        }
-        cpu::Selection here = whole;
-        here.steps = whole.steps.subspan(k, 1);
-        here.loops = whole.loops.subspan(loops);
-        loops += step.kind == cpu::StepKind::Loop;
-        cpu::run_steps(field.parts, evaluator.ranges, here);
-        for (std::uint32_t n = 0; n < part.writes; ++n) {
-            slopes.by_slot[field.parts.slots[part.first_slot + n]] = {};
-            if (zeros) slopes.zeros[field.parts.slots[part.first_slot + n]] = {};
-        }
-        // One number all over the box, as the copy of a repetition: it does not change.
-        const bool runs = step.kind == cpu::StepKind::Run && !step.once;
-        for (std::uint32_t n = 0; runs && n < std::min(part.writes, part.operands); ++n)
-            if (const std::uint32_t to = operands[n]; !slopes.shared(to))
-                slopes.by_slot[slopes.slot(to)].known =
-                    evaluator.ranges.lo[to] == evaluator.ranges.hi[to];
-        for (std::uint32_t n = 0; plain && n < part.writes; ++n) {
-            const std::uint32_t to = operands[n];
-            if (slopes.shared(to)) continue;
-            if (zeros && !waves) {
-                std::optional<Linear> itself;
-                if (made[n].known && !made[n].jumps)
-                    itself = linear_of(made[n],
-                                       {evaluator.ranges.lo[to + 1], evaluator.ranges.hi[to + 1]},
-                                       lo, hi);
-                slopes.zeros[slopes.slot(to)] =
-                    zeros_of(cpu::kernel_of_variant(step.target), of, itself, by_id);
-            }
-            if (!made[n].known) continue;
-            if (made[n].id == 0) {
-                made[n].id = ++ids;
-                by_id.push_back(zeros ? slopes.zeros_at(to) : Zeros{});
-            }
-            slopes.by_slot[slopes.slot(to)] = made[n];
-            see({k, to}, made[n]);
-        }
-    }
-    return slopes;
-}
-
-constexpr std::size_t longest_tape = 500; // steps
-
 // Whether a box is not in the inside of what the field is cut off at.
 bool reaches_cut(const Field &field, const Point &lo, const Point &hi) {
     if (!field.cut) return false;
@@ -284,7 +131,7 @@ std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, c
                              const Point &lo, const Point &hi) {
     std::vector<Level> levels;
     if (tape.steps.size() > longest_tape) return levels;
-    slopes_over(evaluator, tape, boxes, lo, hi, [&](Register where, const Varying &number) {
+    slopes_over(evaluator, tape, boxes, {lo, hi}, [&](Register where, const Varying &number) {
         if (const double slope = least_slope(number); slope > 0 && !number.jumps)
             levels.push_back(level_of(where, evaluator.ranges, number, slope));
     });
@@ -311,8 +158,7 @@ std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &ta
     const cpu::Program::Slot &result = evaluator.field.program.results[0];
     if (reaches_cut(evaluator.field, lo, hi) || result.shared || tape.steps.size() > longest_tape)
         return std::nullopt;
-    const Slopes slopes =
-        slopes_over(evaluator, tape, boxes, lo, hi, [](Register, const Varying &) {});
+    const Slopes slopes = slopes_over(evaluator, tape, boxes, {lo, hi});
     return linear_in(slopes, evaluator, lo, hi);
 }
 
@@ -373,8 +219,7 @@ Border border_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes 
     if (!field.proved || reaches_cut(field, lo, hi) || result.shared ||
         tape.steps.size() > longest_tape)
         return border;
-    const Slopes slopes = slopes_over(
-        evaluator, tape, boxes, lo, hi, [](Register, const Varying &) {}, {}, true);
+    const Slopes slopes = slopes_over(evaluator, tape, boxes, {lo, hi, {}, true});
     border.linear = linear_in(slopes, evaluator, lo, hi);
     border.zeros = slopes.zeros_at(result.address);
     for (const Linear &sheet : border.zeros.sheets)
@@ -389,8 +234,7 @@ std::optional<double> least_slope_along(Evaluator &evaluator, const cpu::ShortTa
                                         const std::array<double, 3> &along) {
     const cpu::Program::Slot &result = evaluator.field.program.results[0];
     if (result.shared || tape.steps.size() > longest_tape) return std::nullopt;
-    const Slopes slopes = slopes_over(
-        evaluator, tape, boxes, lo, hi, [](Register, const Varying &) {}, along);
+    const Slopes slopes = slopes_over(evaluator, tape, boxes, {lo, hi, along});
     const Varying field = slopes.at(result.address);
     if (!field.known || (field.jumps && !evaluator.field.proved)) return std::nullopt;
     return field.slope[3].lo - 1e-9 * size(field.slope[3]);

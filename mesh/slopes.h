@@ -3,7 +3,7 @@
 #pragma once
 
 #include "mesh/field.h"
-#include "mesh/zeros.h"
+#include "mesh/slope_run.h"
 
 #include <optional>
 
@@ -18,13 +18,6 @@ struct Level {
     std::array<std::array<double, 2>, 3> slopes{}; // along each axis: between these
     std::array<float, 2> middle{};                 // its float at middle_point lies between these
 };
-
-// A place about the middle of a box.
-inline Point middle_point(const Point &lo, const Point &hi) {
-    Point middle{};
-    for (std::size_t i = 0; i < 3; ++i) middle[i] = 0.5f * (lo[i] + hi[i]);
-    return middle;
-}
 
 // What another number lies within where one does, as far as both change alike over a box: two planes
 // that were turned each by itself are one but for rounding.

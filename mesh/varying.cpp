@@ -223,6 +223,67 @@ Varying selected(const Varying &choice, const Varying &a, const Varying &b) {
     return made;
 }
 
+// The least share of the slopes of b in those of a blend, and the greatest, by how much b is above a,
+// measured by the blend's radius: 1/2 where they are equal, less above.
+using ShareOfOther = double (*)(double above);
+double share_in_smooth(double x) { return std::clamp(0.5 - 0.5 * x, 0.0, 1.0); }
+double share_in_round(double x) {
+    return std::fabs(x) >= 1 ? (x > 0 ? 0 : 1) : 0.5 * (1 - x / std::sqrt(2 - x * x));
+}
+double share_in_chamfer(double x) { return x >= 1 ? 0 : x <= -1 ? 1 : 0.5; }
+
+// min(a, b) less what a blend of radius r takes off, which falls by at most half of |a - b|: its slopes
+// are a mean of those of a and b. Not known where the radius changes.
+Varying blended(const Varying &a, const Varying &b, const Varying &r, ShareOfOther share) {
+    constexpr double rounding = 1e-9, of_blends = 0x1p-20;
+    Varying made;
+    made.known = a.known && b.known && r.known;
+    for (const Interval &slope : r.slope) made.known = made.known && size(slope) == 0;
+    made.error = std::max(a.error, b.error) + r.error +
+                 of_blends * (size(a.range) + size(b.range) + size(r.range));
+    Interval of_b{0, 1};
+    if (r.range.lo > 1e-12) {
+        const Interval above = Interval{b.range.lo - a.range.hi, b.range.hi - a.range.lo} *
+                               Interval{1 / r.range.hi, 1 / r.range.lo};
+        of_b = {std::max(share(above.hi + rounding) - rounding, 0.0),
+                std::min(share(above.lo - rounding) + rounding, 1.0)};
+    }
+    for (std::size_t i = 0; i < directions; ++i) {
+        const auto mean = [&](double w) {
+            return Interval{1 - w, 1 - w} * a.slope[i] + Interval{w, w} * b.slope[i];
+        };
+        made.slope[i] = hull(mean(of_b.lo), mean(of_b.hi));
+    }
+    return made;
+}
+
+// A ball by its place, its middle and its radius, with its range.
+Varying ball_of(const Varying *in) {
+    Varying part[3];
+    double least = 0, most = 0; // squares
+    for (std::size_t i = 0; i < 3; ++i) {
+        part[i] = minus(in[i], in[3 + i]);
+        const Interval r = part[i].range;
+        least += std::pow(std::max({r.lo, -r.hi, 0.0}), 2);
+        most += size(r) * size(r);
+    }
+    const Varying length = length_of(part, 3);
+    Varying ball = chained({{&length, one}, {&in[6], minus_one}}, size(in[6].range));
+    ball.range = {std::sqrt(least) - in[6].range.hi - ball.error,
+                  std::sqrt(most) - in[6].range.lo + ball.error};
+    return ball;
+}
+
+// What kernels give that blend numbers; others are not known.
+Varying blend_of_several(Kernel kernel, const std::vector<Varying> &in) {
+    if (kernel == Kernel::BlendSmooth) return blended(in[0], in[1], in[2], share_in_smooth);
+    if (kernel == Kernel::BlendRound) return blended(in[0], in[1], in[2], share_in_round);
+    if (kernel == Kernel::BlendChamfer) return blended(in[0], in[1], in[2], share_in_chamfer);
+    if (kernel == Kernel::SmoothBall)
+        return blended(in[0], ball_of(in.data() + 1), in[8], share_in_smooth);
+    return {};
+}
+
 // What kernels give that choose among numbers; others are not known.
 Varying one_of_several(Kernel kernel, const std::vector<Varying> &in) {
     if (kernel == Kernel::MinF) return one_of(in[0], in[1], false);
@@ -282,23 +343,8 @@ Varying through(Kernel kernel, const std::vector<Varying> &in) {
     if (kernel == Kernel::Length2) return length_of(in.data(), 2);
     if (kernel == Kernel::Length3) return length_of(in.data(), 3);
     if (kernel == Kernel::Distance3) return length_of(differences().data(), 3);
-    if (kernel == Kernel::Ball) {
-        const Varying length = length_of(differences().data(), 3);
-        return chained({{&length, one}, {&in[6], minus_one}}, size(in[6].range));
-    }
-    if (kernel == Kernel::MinBall) {
-        const std::vector<Varying> ball(in.begin() + 1, in.end());
-        Varying other = through(Kernel::Ball, ball);
-        double least = 0, most = 0; // squares
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Interval r = minus(ball[i], ball[3 + i]).range;
-            least += std::pow(std::max({r.lo, -r.hi, 0.0}), 2);
-            most += size(r) * size(r);
-        }
-        other.range = {std::sqrt(least) - ball[6].range.hi - other.error,
-                       std::sqrt(most) - ball[6].range.lo + other.error};
-        return one_of(in[0], other, false);
-    }
+    if (kernel == Kernel::Ball) return ball_of(in.data());
+    if (kernel == Kernel::MinBall) return one_of(in[0], ball_of(in.data() + 1), false);
     if (kernel == Kernel::LengthPositive3) {
         Varying nothing, parts[3];
         nothing.known = true;
@@ -314,7 +360,8 @@ Varying through(Kernel kernel, const std::vector<Varying> &in) {
         made.range = {0, 1};
         return made;
     }
-    return one_of_several(kernel, in);
+    const Varying blend = blend_of_several(kernel, in);
+    return blend.known ? blend : one_of_several(kernel, in);
 }
 
 } // namespace fathom::mesh

@@ -8,7 +8,7 @@
 namespace fathom::mesh {
 namespace {
 
-constexpr int least_levels = 2, most_levels = 6;
+constexpr int most_halvings = 6;
 constexpr std::size_t sampled = 256; // leaves whose tapes say what dividing takes
 
 double diagonal(const Block &part) {
@@ -40,7 +40,8 @@ Known known_in(Splitter &splitter, const cpu::ShortTape &tape, const Block &bloc
     if (known.linear && walk.flat) flatten(*known.linear);
     if (known.linear && fully)
         known.slant = slant_in(evaluator, tape, boxes, block.lo, block.hi, *known.linear);
-    if (known.slant ? known.slant->most < poor : known.linear && !fully) return known;
+    if (known.slant ? known.slant->most < poor : known.linear && !fully && is_steady(*known.linear))
+        return known;
     Border border = border_over(evaluator, tape, boxes, block.lo, block.hi);
     known.zeros = std::move(border.zeros);
     if (walk.flat) std::ranges::for_each(known.zeros.sheets, flatten);
@@ -48,9 +49,9 @@ Known known_in(Splitter &splitter, const cpu::ShortTape &tape, const Block &bloc
         if (known.zeros.known || known.slant->most > useless) known.slant.reset();
         return known;
     }
-    known.linear = border.linear ? border.linear : border.like;
+    known.linear = border.like ? border.like : border.linear;
     if (walk.flat && known.linear) flatten(*known.linear);
-    if (border.like && !border.linear) known.slant = slant_of(*known.linear);
+    if (border.like) known.slant = slant_of(*known.linear);
     return known;
 }
 
@@ -87,6 +88,13 @@ void walk_graph(Splitter &splitter, const cpu::ShortTape &tape, const Block &pie
     add_area(graph.area(slant), sums);
 }
 
+// What a look into a box takes of what is to spare: more where there are loops.
+int price_of(const cpu::ShortTape &tape) {
+    constexpr float of_one = 4; // kernels of loops
+    const float in_loops = std::max(tape.cost - static_cast<float>(tape.steps.size()), 0.0f);
+    return 1 + static_cast<int>(std::min(in_loops / of_one, 1e6f));
+}
+
 // The same of a box that is not known to hold a graph. `more`: so often it may be divided beyond
 // `levels`, for the area's sake, while there are boxes to spare.
 void walk_piece(Splitter &splitter, const cpu::ShortTape &tape, const Block &piece, int levels,
@@ -96,12 +104,13 @@ void walk_piece(Splitter &splitter, const cpu::ShortTape &tape, const Block &pie
     const Known known = known_in(splitter, tape, piece, walk, true);
     const auto &[linear, slant, zeros] = known;
     const bool analysed = linear || zeros.known;
-    const bool last = levels <= 0 && (!analysed || spare <= 0 ||
+    const int price = price_of(tape);
+    const bool last = levels <= 0 && (!analysed || spare < price ||
                                       more <= (slant || zeros.known ? for_places - for_edges : 0));
     if (slant && (slant->most < well || last || (levels <= 0 && slant->most < across_edge)))
         return walk_graph(splitter, tape, piece, linear, *slant, std::max(levels, 0), walk, sums);
-    const bool asked = linear && !slant && spare > 0;
-    if (asked) spare -= of_seam;
+    const bool asked = linear && !slant && spare >= price;
+    if (asked) spare -= of_seam * price;
     const bool touches =
         asked && seam_in(splitter.evaluator, tape, splitter.boxes, piece.lo, piece.hi, walk.thin);
     const bool free = zeros.known && zeros.sheets.empty();
@@ -113,25 +122,30 @@ void walk_piece(Splitter &splitter, const cpu::ShortTape &tape, const Block &pie
         if (!touches && !zeros.known) sums.add_open_place(piece.lo, piece.hi);
         return;
     }
-    if (levels <= 0) --spare;
+    if (levels <= 0) spare -= price;
     for (const Block &part : divided(splitter, tape, {piece}, walk, sums))
         walk_piece(splitter, tape, part, levels - 1, levels <= 0 ? more - 1 : more, spare, walk,
                    sums);
 }
 
-// How often open leaves are divided: as the work allows, by half of the parts of each that stay open,
-// but twice at least, so that smaller leaves say more.
-int levels_for(const Field &field, const std::vector<OpenBlock> &open, bool flat,
-               double most_work) {
+// What running the tapes of all open leaves takes, in kernels: by those of some.
+double kernels_of(const Field &field, const std::vector<OpenBlock> &open) {
     if (open.empty()) return 0;
     Splitter splitter(field);
     const std::size_t step = std::max<std::size_t>(open.size() / sampled, 1);
     double cost = 0, count = 0;
     for (std::size_t k = 0; k < open.size(); k += step, ++count)
         cost += tape_in(splitter, open[k].tape, open[k].piece)->cost;
-    cost *= 16 * static_cast<double>(open.size()) / count;
+    return cost * static_cast<double>(open.size()) / count;
+}
+
+// How often open leaves are divided: as the work allows, by half of the parts of each that stay open,
+// but a few times at least, so that smaller leaves say more, unless that takes more than `most`.
+int levels_for(double kernels, bool flat, double work, int least, double most = unbounded) {
+    double cost = 16 * kernels;
     int levels = 0;
-    for (double all = cost; levels < least_levels || (levels < most_levels && all <= most_work);
+    for (double all = cost; kernels > 0 && ((levels < least && all <= most) ||
+                                            (levels < most_halvings && all <= work));
          all += cost) {
         ++levels;
         cost *= flat ? 2 : 4;
@@ -145,7 +159,8 @@ void walk_leaf(Splitter &splitter, const OpenBlock &leaf, const Walk &walk, Cell
     const TapePtr tape = tape_in(splitter, leaf.tape, leaf.piece);
     int spare = walk.spare;
     splitter.by_zeros = false;
-    const Known known = known_in(splitter, *tape, leaf.piece, walk, false);
+    splitter.evaluator.followed = walk.followed;
+    const Known known = walk.looks ? known_in(splitter, *tape, leaf.piece, walk, false) : Known{};
     splitter.by_zeros = known.zeros.known;
     if (known.linear || known.zeros.known)
         return walk_piece(splitter, *tape, open[0], walk.by_planes, for_places, spare, walk, sums);
@@ -219,13 +234,19 @@ TapePtr tape_in(Splitter &splitter, const TapePtr &tape, const Block &piece) {
 }
 
 CellSums sums_of_open(const Field &field, const std::vector<OpenBlock> &open, Walk walk,
-                      unsigned threads, Progress &progress, double work) {
-    constexpr double of_planes = 16; // a plane takes so many times what dividing does, about
-    constexpr std::size_t spare = 400'000, least_spare = 32, most_spare = 512; // of all; of a leaf
-    walk.by_planes = levels_for(field, open, walk.flat, work / of_planes);
-    walk.by_dividing = levels_for(field, open, walk.flat, work);
-    walk.spare = static_cast<int>(
-        std::clamp(spare / std::max<std::size_t>(open.size(), 1), least_spare, most_spare));
+                      unsigned threads, Progress &progress, const MeasureEffort &effort) {
+    constexpr double of_planes = 16;        // a plane takes so many times what dividing does, about
+    constexpr std::size_t most_spare = 512; // of a leaf
+    constexpr double at_least = 0.5;        // of the work, for two levels
+    const double kernels = kernels_of(field, open);
+    walk.by_planes = levels_for(kernels, walk.flat, effort.work / of_planes, effort.least_halvings,
+                                at_least * effort.work);
+    walk.by_dividing = levels_for(kernels, walk.flat, effort.work, effort.least_halvings);
+    walk.looks = kernels <= effort.looks;
+    walk.followed = std::min(effort.in_loops / std::max(static_cast<double>(open.size()), 1.0),
+                             static_cast<double>(longest_tape));
+    walk.spare = static_cast<int>(std::clamp(effort.spare / std::max<std::size_t>(open.size(), 1),
+                                             effort.least_spare, most_spare));
     constexpr std::size_t piece_of_work = 256; // leaves
     std::vector<CellSums> found((open.size() + piece_of_work - 1) / piece_of_work);
     in_parallel(

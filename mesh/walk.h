@@ -107,6 +107,8 @@ struct Walk {
     bool flat = false;        // nothing changes along z: boxes are divided across x and y alone
     int by_planes = 0, by_dividing = 0; // how often they are divided
     int spare = 0;                      // boxes of a leaf that are divided more often
+    bool looks = true;                  // at slopes
+    double followed = 0;                // steps of loops at a look
 };
 
 // The parts of each of some open boxes, by halves: those that stay open. What the others add is added.
@@ -124,9 +126,9 @@ struct OpenBlock {
     TapePtr tape;
 };
 
-// What open boxes add, by a walk without levels, which are chosen as a counted amount of work allows.
+// What open boxes add, by a walk without levels, which are chosen as the effort allows.
 CellSums sums_of_open(const Field &field, const std::vector<OpenBlock> &open, Walk walk,
-                      unsigned threads, Progress &progress, double work);
+                      unsigned threads, Progress &progress, const MeasureEffort &effort);
 
 // What is enclosed by that. `middle`: that of the moments. Without `used_bound`.
 Measures measures_of(const CellSums &sums, const Real3 &middle);

@@ -135,6 +135,8 @@ void add_data(py::module_ &m) {
         .def_readonly("surface_to_mesh", &fathom::MeshCertificate::surface_to_mesh)
         .def_readonly("least_volume", &fathom::MeshCertificate::least_volume)
         .def_readonly("largest_volume", &fathom::MeshCertificate::largest_volume)
+        .def_readonly("least_area", &fathom::MeshCertificate::least_area)
+        .def_readonly("largest_area", &fathom::MeshCertificate::largest_area)
         .def_readonly("components", &fathom::MeshCertificate::components)
         .def_readonly("genus", &fathom::MeshCertificate::genus);
 }

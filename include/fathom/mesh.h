@@ -77,6 +77,11 @@ struct MeshCertificate {
     long genus = 0;                  /**< of the mesh, all its components together */
     /** The solid's volume lies between these. */
     double least_volume = 0, largest_volume = 0;
+    /** So does the area of its surface. `largest_area` is infinite where in `open_places` of the
+     *  smallest boxes it is not known how the surface runs, one of them about `open_place`. */
+    double least_area = 0, largest_area = 0;
+    std::size_t open_places = 0;
+    std::array<double, 3> open_place{};
     double mesh_volume = 0, mesh_area = 0; /**< of the triangles */
     /** `intervals`, `single-precision`; `bound` where the proved bound left cells out. */
     std::vector<std::string> rests_on;

@@ -66,6 +66,8 @@ class MeshCertificate:
     surface_to_mesh: float
     least_volume: float
     largest_volume: float
+    least_area: float
+    largest_area: float
     components: int
     genus: int
 

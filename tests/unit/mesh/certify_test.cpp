@@ -54,6 +54,18 @@ TEST_CASE("a ball's certificate encloses what is known of balls") {
     CHECK(certificate.largest_volume - certificate.least_volume < 3 * side * 4 * std::numbers::pi);
     CHECK(certificate.mesh_volume == Approx(volume).epsilon(0.01));
     CHECK((certificate.components == 1 && certificate.genus == 0));
+    CHECK(std::isinf(certificate.area.hi));
+
+    const driver::Compilation c = driver::compile_text("mesh.sdf", "sphere(1)", "", {});
+    mesh::Certificate narrow = certificate;
+    mesh::Progress progress;
+    enclose_measures(c.scene, cells(30), made, progress, narrow);
+    CHECK((narrow.least_volume < volume && volume < narrow.largest_volume));
+    CHECK(narrow.largest_volume - narrow.least_volume <
+          0.1 * (certificate.largest_volume - certificate.least_volume));
+    const double area = 4 * std::numbers::pi;
+    CHECK((narrow.area.lo < area && area < narrow.area.hi));
+    CHECK(narrow.area.hi - narrow.area.lo < 0.1 * area);
 }
 
 TEST_CASE("pieces and handles of the mesh are counted") {
