@@ -155,6 +155,10 @@ int levels_for(double kernels, bool flat, double work, int least, double most = 
 
 // What an open leaf adds.
 void walk_leaf(Splitter &splitter, const OpenBlock &leaf, const Walk &walk, CellSums &sums) {
+    if (!walk.looks && walk.by_dividing == 0) { // as it is
+        add_open(leaf.piece, {}, walk.middle, sums);
+        return sums.add_open_place(leaf.piece.lo, leaf.piece.hi);
+    }
     std::vector<Block> open{leaf.piece};
     const TapePtr tape = tape_in(splitter, leaf.tape, leaf.piece);
     int spare = walk.spare;
