@@ -251,14 +251,14 @@ struct Interpreter {
     std::vector<std::pair<Symbol, Span>> hiding{}; // the user's functions named as the library's
     std::map<std::pair<std::uint32_t, std::string>, Span> unknown_names{}; // by file, as first told
     std::map<std::vector<std::uint64_t>, Specialization> specializations{};
+    std::unordered_map<ir::NodeId, ir::NodeId> told_apart{}; // numbers, as ops read them that do so
     std::unordered_map<std::vector<std::uint64_t>, Value, HashOfWords> remembered{};
     std::map<std::pair<const File *, std::uint32_t>, bool>
         never_specialize{}; // functions seen to give no number
     std::map<std::pair<const File *, std::uint32_t>, int>
         specialized{}; // how often; far below 0: the body has to know its numbers
-    std::map<std::string, std::uint32_t>
-        interned_records{};                // libraries, regions, materials by content
-    std::vector<ir::NodeId> param_nodes{}; // by Scene::params
+    std::map<std::string, std::uint32_t> interned_records{}; // libraries, regions, … by content
+    std::vector<ir::NodeId> param_nodes{};                   // by Scene::params
     std::unordered_map<std::uint32_t, bool> only_shapes{};
     std::map<ir::ShapeId, std::vector<std::array<double, 2>>>
         corners{};   // of polygons' fields, where known

@@ -6,6 +6,7 @@
 #include "typecheck/interpreter.h"
 #include "typecheck/places.h"
 #include "typecheck/remedies.h"
+#include "typecheck/told_apart.h"
 
 #include <fmt/format.h>
 
@@ -159,7 +160,7 @@ Value apply_op(Interpreter &ev, Op op, std::vector<Value> args, Span place, std:
         ir::NodeId node = to_node(ev, a);
         if (ir::components(widest) > 1 && ir::components(ev.scene.graph[node].type) == 1)
             node = ev.scene.graph.splat(node, widest);
-        nodes.push_back(ir::tells_apart[op] ? ir::without_waves(ev.scene.graph, node) : node);
+        nodes.push_back(ir::tells_apart[op] ? told_apart(ev, node, place) : node);
     }
     return from_node(ev, ev.scene.graph.make(op, nodes), is_color);
 }
@@ -256,8 +257,8 @@ static Value compare(Interpreter &ev, lang::BinaryOp op, const Value &a, const V
     ir::NodeId x = to_node(ev, whole || bools ? a : to_float(ev, a)),
                y = to_node(ev, whole || bools ? b : to_float(ev, b));
     ir::Graph &g = ev.scene.graph;
-    x = ir::without_waves(g, x);
-    y = ir::without_waves(g, y);
+    x = told_apart(ev, x, place);
+    y = told_apart(ev, y, place);
     switch (op) {
     case BinaryOp::Less: return from_node(ev, g.make(Op::Less, {x, y}));
     case BinaryOp::LessEqual: return from_node(ev, g.make(Op::LessEqual, {x, y}));

@@ -12,7 +12,8 @@
 namespace fathom::ir {
 namespace {
 
-constexpr int max_depth = 14, max_visits = 200;
+constexpr int max_depth = 14, max_visits = 200; // of a sum, and of what sums are looked for in
+constexpr std::size_t max_visits_in_all = 2000;
 constexpr OpSet sums{Op::Add,  Op::Sub,     Op::Neg,   Op::Mul,   Op::Div, Op::Mod,
                      Op::Make, Op::Swizzle, Op::Splat, Op::Fract, Op::Call};
 
@@ -35,9 +36,25 @@ struct Part {
     friend auto operator<=>(const Part &, const Part &) = default;
 };
 
-struct Sum {
+// What all sums of a number share.
+struct Work {
     Graph &graph;
+    std::size_t visits = 0; // of nodes; one that is made is one
+    std::unordered_map<NodeId, NodeId> bodies{};
+
+    NodeId body(NodeId call) {
+        if (const auto known = bodies.find(call); known != bodies.end()) return known->second;
+        const std::size_t before = graph.size();
+        const NodeId body = called(graph, call);
+        visits += graph.size() - before;
+        return bodies[call] = body;
+    }
+};
+
+struct Sum {
+    Work &work;
     std::map<NodeId, bool> ways; // of a choice, by its condition: the arm that is taken
+    Graph &graph = work.graph;
     std::map<Part, Amount> terms{};
     double number = 0;
     NodeId open{}; // the condition of a choice that is met
@@ -72,7 +89,7 @@ struct Sum {
         failed = true;
     }
     void add(NodeId id, int c, double by, int depth) {
-        if (--left < 0 || depth > max_depth) failed = true;
+        if (--left < 0 || depth > max_depth || ++work.visits > max_visits_in_all) failed = true;
         if (failed) return;
         const Node node = graph[id];
         if (const auto known = constant(id, c)) {
@@ -83,7 +100,7 @@ struct Sum {
             const NodeId arg = graph.arg(id, a);
             add(arg, place(arg, c), times, depth + 1);
         };
-        if (node.op == Op::Call) return add(called(graph, id), c, by, depth + 1);
+        if (node.op == Op::Call) return add(work.body(id), c, by, depth + 1);
         const auto factor = [&](int a) { return constant(graph.arg(id, a), c); };
         if (node.op == Op::Add || node.op == Op::Sub) {
             of(0, by);
@@ -132,9 +149,9 @@ struct Sum {
 };
 
 // By component; none where nothing cancels.
-NodeId cancelled(Graph &graph, NodeId id, int c, const std::map<NodeId, bool> &ways) {
+NodeId cancelled(Work &work, NodeId id, int c, const std::map<NodeId, bool> &ways) {
     constexpr std::size_t max_choices = 2;
-    Sum sum{graph, ways};
+    Sum sum{work, ways};
     sum.add(id, c, 1, 0);
     if (sum.failed) return {};
     if (sum.cancels() && !sum.open) return sum.written();
@@ -142,14 +159,15 @@ NodeId cancelled(Graph &graph, NodeId id, int c, const std::map<NodeId, bool> &w
     auto first = ways, second = ways;
     first[sum.open] = true;
     second[sum.open] = false;
-    const NodeId a = cancelled(graph, id, c, first),
-                 b = a ? cancelled(graph, id, c, second) : NodeId{};
-    if (b) return graph.make(Op::Select, {sum.open, a, b});
+    const NodeId a = cancelled(work, id, c, first),
+                 b = a ? cancelled(work, id, c, second) : NodeId{};
+    if (b) return work.graph.make(Op::Select, {sum.open, a, b});
     return sum.cancels() ? sum.written() : NodeId{};
 }
 
 struct Rewriter {
     Graph &graph;
+    Work work{graph};
     std::unordered_map<NodeId, NodeId> known{};
     int left = max_visits;
 
@@ -159,7 +177,7 @@ struct Rewriter {
         std::vector<NodeId> parts;
         bool some = false;
         for (int c = 0; c < components(type); ++c) {
-            parts.push_back(cancelled(graph, id, c, {}));
+            parts.push_back(cancelled(work, id, c, {}));
             some = some || parts.back();
         }
         if (!some) return {};
@@ -190,13 +208,14 @@ struct Rewriter {
 };
 
 // Is there a wave, or a rounded number that one may be made of, to be seen at all?
-bool has_waves(const Graph &graph, NodeId root) {
+bool has_waves(const Graph &graph, NodeId root, std::size_t &visits) {
     constexpr OpSet waves{Op::Fract, Op::Mod, Op::Floor, Op::Ceil, Op::Round, Op::Trunc},
         ends{Op::Loop, Op::LoopResult, Op::Hash};
     std::vector<NodeId> todo{root};
     for (int left = max_visits; !todo.empty() && left > 0; --left) {
         const NodeId id = todo.back();
         todo.pop_back();
+        ++visits;
         if (waves[graph[id].op]) return true;
         if (ends[graph[id].op]) continue;
         if (graph[id].op == Op::Call)
@@ -208,10 +227,13 @@ bool has_waves(const Graph &graph, NodeId root) {
 
 } // namespace
 
-NodeId without_waves(Graph &graph, NodeId id) {
+NodeId without_waves(Graph &graph, NodeId id, std::size_t &visits) {
     if (!sums[graph[id].op] && !through[graph[id].op]) return id;
-    if (!has_waves(graph, id)) return id;
-    return Rewriter{graph}.rewritten(id, 0);
+    if (!has_waves(graph, id, visits)) return id;
+    Rewriter rewriter{graph};
+    const NodeId written = rewriter.rewritten(id, 0);
+    visits += rewriter.work.visits;
+    return written;
 }
 
 } // namespace fathom::ir

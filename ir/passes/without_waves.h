@@ -13,6 +13,7 @@ constexpr OpSet tells_apart{Op::Hash,  Op::Floor, Op::Ceil,  Op::Round, Op::Trun
 // The same number or vector made of `floor` alone wherever what it is made of cancels; the node itself
 // where nothing does. A sum that only rounding tells from a whole number has another rounding at each
 // point, and what tells numbers apart (a hash, a step, a comparison) would tell these apart.
-NodeId without_waves(Graph &graph, NodeId id);
+// `visits`: how many nodes were looked at is added to it.
+NodeId without_waves(Graph &graph, NodeId id, std::size_t &visits);
 
 } // namespace fathom::ir

@@ -4,9 +4,9 @@
 #include "typecheck/binding.h"
 #include "typecheck/interpreter.h"
 #include "typecheck/remedies.h"
+#include "typecheck/told_apart.h"
 
 #include "ir/maps.h"
-#include "ir/passes/without_waves.h"
 
 #include <fmt/format.h>
 
@@ -232,9 +232,8 @@ static Value int_call(Interpreter &ev, const CallSite &site, std::vector<Value> 
                 .help("`floor` and `trunc` cut a float off and keep it one");
             return poison();
         }
-        ir::Graph &g = ev.scene.graph;
-        const ir::NodeId number = ir::without_waves(g, to_node(ev, v));
-        return from_node(ev, g.make(Op::ToInt, Type::Int, {number}));
+        const ir::NodeId number = told_apart(ev, to_node(ev, v), site.arg(0));
+        return from_node(ev, ev.scene.graph.make(Op::ToInt, Type::Int, {number}));
     }
     report(ev, Code::TypeMismatch, site.arg(0),
            fmt::format("`int` wants a number, this is {}", describe(ev, v)));
@@ -317,9 +316,8 @@ static Value hash_call(Interpreter &ev, const CallSite &site, std::vector<Value>
     if (!v) return poison();
     if (is_scalar(ev, args[0]) && numeric_type(ev, args[0]) == Type::Int) v = args[0];
     if (const auto known = folded(Op::Hash, Type::Float, {&*v, 1}, false)) return *known;
-    ir::Graph &g = ev.scene.graph;
-    const ir::NodeId place = ir::without_waves(g, to_node(ev, *v));
-    return from_node(ev, g.make(Op::Hash, {place}));
+    const ir::NodeId number = told_apart(ev, to_node(ev, *v), site.arg(0));
+    return from_node(ev, ev.scene.graph.make(Op::Hash, {number}));
 }
 
 // -- matrices of rotations (library only)

@@ -67,6 +67,28 @@ TEST_CASE("looking for files is work") {
                  "distance_grid(\"a.vdb\", grid: name)") == "file-not-found");
 }
 
+TEST_CASE("looking for waves in what is told apart is work") {
+    std::vector<std::string> terms;
+    for (int i = 1; i <= 64; ++i) terms.push_back("fract(q.x * " + std::to_string(i) + ")");
+    for (; terms.size() > 1; terms.resize(terms.size() / 2))
+        for (std::size_t i = 0; i < terms.size() / 2; ++i)
+            terms[i] = "(" + terms[2 * i] + " + " + terms[2 * i + 1] + ")";
+    const auto errors = [&](const std::string &of_sum) {
+        driver::CompileOptions options;
+        options.limits.work = 100'000; // the text takes less by itself
+        return driver::compile_text(
+                   "waves.sdf",
+                   "implicit(p => length(p) - 1 + fold(0..100, 0.0, (acc, i) => {\n"
+                   "  let q = p * (1 + 0.001 * i)\n  let u = " +
+                       terms[0] + "\n  return acc + 0.000001 * " + of_sum +
+                       "\n}), within: ball(2), estimate: 5)\n",
+                   "", options)
+            .diagnostics.errors();
+    };
+    CHECK(errors("u") == 0);
+    CHECK(errors("step(i, u)") == 1);
+}
+
 TEST_CASE("texts nest so far and no further") {
     const int deep = 100'000;
     CHECK(answer("sphere(" + times("(", deep) + "1" + times(")", deep) + ")") == "too-deep");
