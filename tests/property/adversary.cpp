@@ -564,7 +564,7 @@ class Adversary : public Chance {
 } // namespace
 
 TEST_CASE("what an adversary writes is refused, or is as flat as proved") {
-    const int scenes = effort(250), seed = test::seed();
+    const int scenes = effort(160), seed = test::seed();
     int accepted = 0, wrong = 0;
     for (int i = 0; i < scenes; ++i) {
         Adversary random(std::uint64_t(seed) * 1'000'003u + std::uint64_t(i));

@@ -192,19 +192,19 @@ class Swapped : public Chance {
 } // namespace
 
 TEST_CASE("folds that swap and turn are no steeper than proved") {
-    const Judged judged = judge_scenes<Swapped>(effort(30), 400);
+    const Judged judged = judge_scenes<Swapped>(effort(20), 400);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 2);
 }
 
 TEST_CASE("a length of numbers of known signs is no steeper than proved") {
-    const Judged judged = judge_scenes<Corner>(effort(40), 400);
+    const Judged judged = judge_scenes<Corner>(effort(28), 400);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes * 3 / 4);
 }
 
 TEST_CASE("numbers that are kept in order are refused, or do not jump") {
-    const Judged judged = judge_scenes<Ordered>(effort(30), 400);
+    const Judged judged = judge_scenes<Ordered>(effort(20), 400);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 3);
     CHECK(judged.accepted < judged.scenes);

@@ -38,7 +38,7 @@ void around(const ir::Scene &scene, test::Point3 &lo, test::Point3 &hi) {
 } // namespace
 
 TEST_CASE("the field keeps its sign within the distance it gives") {
-    const int balls = test::effort(250'000);
+    const int balls = test::effort(150'000);
     for (const fs::path &file : examples()) {
         driver::Compilation c = driver::compile_file(file, {});
         INFO(file.filename().string());

@@ -314,7 +314,7 @@ class Formula : public Chance {
 } // namespace
 
 TEST_CASE("a formula is refused, or is as flat as proved") {
-    const Judged judged = judge_scenes<Formula>(effort(125), 3000);
+    const Judged judged = judge_scenes<Formula>(effort(85), 3000);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 6);
 }

@@ -65,7 +65,7 @@ float tape_value(const cpu::Program &program, cpu::Scratch &scratch, const std::
 
 TEST_CASE("a program that checks emits valid GLSL, evaluates as the graph says, and is formatted "
           "without a change") {
-    unsigned good = 0, tried = static_cast<unsigned>(test::effort(300));
+    unsigned good = 0, tried = static_cast<unsigned>(test::effort(200));
     for (unsigned seed = 0; seed < tried; ++seed) {
         const std::string text = programs::scene(seed);
         INFO("seed " << seed << "\n" << text);
@@ -150,7 +150,7 @@ TEST_CASE("a program that checks emits valid GLSL, evaluates as the graph says, 
 }
 
 TEST_CASE("a function means the same at scene time and at field time") {
-    unsigned good = 0, tried = static_cast<unsigned>(test::effort(400));
+    unsigned good = 0, tried = static_cast<unsigned>(test::effort(260));
     for (unsigned seed = 0; seed < tried; ++seed) {
         const std::string text =
             programs::function(seed) +

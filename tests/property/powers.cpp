@@ -206,14 +206,14 @@ TEST_CASE("rounded sizes and norms are refused, or are no steeper than proved") 
 }
 
 TEST_CASE("signs times functions are refused, or do not jump") {
-    const Judged judged = judge_scenes<SignedFunction>(effort(60), 800);
+    const Judged judged = judge_scenes<SignedFunction>(effort(40), 800);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 4);
     CHECK(judged.accepted < judged.scenes);
 }
 
 TEST_CASE("roots of sums of powers are refused, or are no steeper than proved") {
-    const Judged judged = judge_scenes<PowerMean>(effort(40), 1200);
+    const Judged judged = judge_scenes<PowerMean>(effort(28), 1200);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 2);
     CHECK(judged.accepted < judged.scenes);

@@ -374,7 +374,7 @@ TEST_CASE("what planes enclose holds the volume, and is narrow") {
     std::mt19937 dice(8);
     std::uniform_real_distribution<double> some(0.4, 1.6), turn(-1, 1);
     const double pi = std::numbers::pi;
-    for (int n = 0; n < test::effort(4); ++n) {
+    for (int n = 0; n < test::effort(2); ++n) {
         const double a = some(dice), b = some(dice), c = some(dice), r = 0.2 * a;
         const std::string turned = fmt::format(".rotate({:.4f}, axis: [{:.3f}, {:.3f}, 1])",
                                                turn(dice), turn(dice), turn(dice));

@@ -80,7 +80,7 @@ TEST_CASE("a box comes down to its twelve triangles, a plate with a hole to few"
 }
 
 TEST_CASE("a simplified mesh has a certificate of its own") {
-    Fewer f = fewer("box(1) - sphere(0.62)", 40, 0.25);
+    Fewer f = fewer("box(1) - sphere(0.62)", 28, 0.25);
     f.made.mesh = f.simplified.mesh;
     f.made.simplified = 0.25 * f.side;
     mesh::Progress progress;
