@@ -89,25 +89,35 @@ std::vector<Row> rows_of(const v1::FlatMeasures &of, const MeasureCommand &comma
     return rows;
 }
 
-// Seven digits, and no more than matter beside the solid's size.
+// Seven digits; 0 where it is that beside `scale`, but for rounding.
 std::string printed(double number, double scale) {
     if (std::fabs(number) < 1e-9 * scale) number = 0;
     return fmt::format("{:.7g}", number);
 }
 // Of an enclosure's ends, rounded outward.
 std::string printed_end(double number, double scale, bool up) {
-    std::string text = printed(number, scale);
-    const double read = parse_number(text).value_or(number);
-    if (up ? read >= number : read <= number) return text;
+    double read = number;
+    for (const double beside : {scale, 0.0}) {
+        const std::string text = printed(number, beside);
+        read = parse_number(text).value_or(number);
+        if (up ? read >= number : read <= number) return text;
+    }
     const double step = std::pow(10.0, std::floor(std::log10(std::fabs(number))) - 6);
     return fmt::format("{:.7g}", up ? read + step : read - step);
 }
 
-void put_table(const std::string &title, const std::vector<Row> &rows, double scale,
+bool is_coordinate(const Row &row) {
+    return row.name.starts_with("from ") || row.name.starts_with("to ") ||
+           row.name.starts_with("centre ");
+}
+
+// `size`: of the solid, beside which coordinates may be 0.
+void put_table(const std::string &title, const std::vector<Row> &rows, double size,
                Terminal &terminal) {
     terminal.put(
         fmt::format("{}\n{:24}{:>14}{:>16}{:>14}\n", title, "", "value", "at least", "at most"));
     for (const Row &row : rows) {
+        const double scale = is_coordinate(row) ? size : 0;
         const std::string name =
             row.unit.empty() ? row.name : fmt::format("{} ({})", row.name, row.unit);
         terminal.put(row.proved ? fmt::format("  {:22}{:>14}{:>16}{:>14}\n", name,
@@ -230,8 +240,7 @@ void fill(const Measures &of, const MeasureCommand &command, const char *what, S
 double size_of(const std::vector<Row> &rows) {
     double size = 0;
     for (const Row &row : rows)
-        if (row.name.starts_with("from ") || row.name.starts_with("to "))
-            size = std::max(size, std::fabs(row.value));
+        if (is_coordinate(row)) size = std::max(size, std::fabs(row.value));
     return size;
 }
 

@@ -1,5 +1,7 @@
 #include "mesh/varying.h"
 
+#include "ir/blends.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -242,7 +244,7 @@ Varying blended(const Varying &a, const Varying &b, const Varying &r, ShareOfOth
     made.error = std::max(a.error, b.error) + r.error +
                  of_blends * (size(a.range) + size(b.range) + size(r.range));
     Interval of_b{0, 1};
-    if (r.range.lo > 1e-12) {
+    if (r.range.lo > ir::sem::min_radius) { // below it a smooth blend is another one
         const Interval above = Interval{b.range.lo - a.range.hi, b.range.hi - a.range.lo} *
                                Interval{1 / r.range.hi, 1 / r.range.lo};
         of_b = {std::max(share(above.hi + rounding) - rounding, 0.0),

@@ -16,7 +16,7 @@ try() { # NAME COMMAND…
 : >build-weekly/summary
 try clang scripts/clang.sh
 try apart sh -c 'cmake -G Ninja -S . -B build-apart && cmake --build build-apart -- -k 0'
-try effort env FATHOM_EFFORT=8 ctest --test-dir build --output-on-failure -E fuzz
+try effort env FATHOM_EFFORT=12 ctest --test-dir build --output-on-failure -E fuzz
 try floats env FATHOM_EFFORT=997 build/test_cpu 'exp, log and hyperbolic functions*'
 try sanitize scripts/sanitize.sh
 try tidy scripts/tidy.sh

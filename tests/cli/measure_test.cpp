@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <sstream>
+
 using Json = nlohmann::json;
 
 namespace {
@@ -121,6 +123,24 @@ TEST_CASE("a printed number lies in what is proved of it") {
     for (const Json &row : rows) {
         INFO(row.dump());
         CHECK(holds(row, row["value"].get<double>()));
+    }
+}
+
+TEST_CASE("small numbers are printed as they are, however far away the solid is") {
+    ScratchFolder folder;
+    folder.write("far.sdf", "sphere(0.001).translate(x: 10)\n");
+    const Result made = shell(folder, "fathom measure far.sdf --resolution 24");
+    REQUIRE(made.exit == 0);
+    const double pi = 3.14159265358979;
+    for (const auto &[name, value] :
+         {std::pair<std::string, double>{"  volume ", 4e-9 / 3 * pi}, {"  area ", 4e-6 * pi}}) {
+        const std::size_t at = made.out.find(name);
+        REQUIRE(at != std::string::npos);
+        std::istringstream row(made.out.substr(at + name.size()));
+        double printed = 0, least = 0, most = 0;
+        row >> printed >> least >> most;
+        INFO(made.out);
+        CHECK((0 < least && least <= value && value <= most && most < 2 * value));
     }
 }
 

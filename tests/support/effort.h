@@ -6,7 +6,7 @@
 namespace fathom::test {
 
 // `usual` times FATHOM_EFFORT, a whole number of at least 1 (1 where it is not set). The usual
-// number is what every change waits for; the weekly script tries eight times as many.
+// number is what every change waits for; the weekly script tries twelve times as many.
 inline int effort(int usual) {
     const char *given = std::getenv("FATHOM_EFFORT");
     const int times = given ? std::atoi(given) : 1;
