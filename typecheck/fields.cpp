@@ -42,9 +42,12 @@ static std::optional<Value> numbers_at(Interpreter &ev, const Value &field,
         if (count == 0) args.clear();
         const bool own = field.kind != ValueKind::Closure || !ev.closures[field.id].library;
         const bool outer = std::exchange(ev.own_field, ev.in_field > 0 ? ev.own_field : own);
+        const bool outermost = !ev.field_start;
+        if (outermost) ev.field_start = ev.scene.graph.size();
         ++ev.in_field;
         value = call_with(ev, field, args, place);
         --ev.in_field;
+        if (outermost) ev.made += bytes_of_long_field(ev), ev.field_start.reset();
         ev.own_field = outer;
     } else {
         value = field;

@@ -237,14 +237,14 @@ struct Interpreter {
     std::vector<JournalEntry> journal{};
     int journaling = 0;
     std::vector<ActiveCall> calls{};
-    int depth = 0;                   // nested evaluations, of any kind
-    const char *stack_end = nullptr; // evaluation goes no deeper than this address
-    Exit *leaving = nullptr;         // of the declaration whose value, an `if`, comes next
-    int in_field = 0;                // > 0 while a field's body is evaluated
-    bool own_field = false;          // … and the outermost one is not the library's
+    int depth = 0;                            // nested evaluations, of any kind
+    const char *stack_end = nullptr;          // evaluation goes no deeper than this address
+    Exit *leaving = nullptr;                  // of the declaration whose value, an `if`, comes next
+    int in_field = 0;                         // > 0 while a field's body is evaluated
+    std::optional<std::size_t> field_start{}; // … and how many nodes there were before it
+    bool own_field = false;                   // … and the outermost one is not the library's
     int quiet = 0; // > 0: errors are counted, not reported (overload resolution, trial loops)
-    std::size_t quiet_errors = 0;
-    std::size_t evaluations = 0;
+    std::size_t quiet_errors = 0, evaluations = 0;
     std::size_t made = 0; // bytes of what the arenas below do not count themselves: see `held`
     bool out_of_budget = false;
     std::size_t names_compared = 0;
@@ -310,14 +310,14 @@ void check_names(Interpreter &ev, const File &ast, std::uint32_t module_frame);
 Diagnostic &report(Interpreter &ev, Code code, Span place, std::string message);
 Span users_place(const Interpreter &ev, Span place);     // his own call, of one in the library
 bool is_library_place(const Interpreter &ev, Span span); // or no place at all
-std::string describe(const Interpreter &ev, const Value &value); // "a float", "a list of 3"
-std::string type_of(const Interpreter &ev,
-                    const Value &value); // facts.cpp: "float", "(x) -> shape"
+std::string describe(const Interpreter &ev, const Value &value);    // "a float", "a list of 3"
+std::string type_of(const Interpreter &ev, const Value &value);     // "float", "(x) -> shape"
 std::string print_value(const Interpreter &ev, const Value &value); // for print(…)
 // Counts steps of work; false once they or the memory are gone, which is reported once.
 bool spend(Interpreter &ev, Span place, std::size_t amount = 1);
 // Whether so many bytes more may be made; where not, it is reported once. Counts nothing.
 bool has_room(Interpreter &ev, Span place, std::size_t bytes);
+std::size_t bytes_of_long_field(const Interpreter &ev); // what proof and tapes will take of it
 Room room_left(const Interpreter &ev);
 
 // -- numeric.cpp: numbers of both stages

@@ -199,9 +199,16 @@ std::string print_value(const Interpreter &ev, const Value &v) {
     return out;
 }
 
+// About what 1.4 million nodes of one field took, over their number: 1.6 GB.
+std::size_t bytes_of_long_field(const Interpreter &ev) {
+    constexpr std::size_t free = 1'000, each = 1'000; // nodes; bytes, as measured
+    const std::size_t nodes = ev.field_start ? ev.scene.graph.size() - *ev.field_start : 0;
+    return nodes > free ? (nodes - free) * each : 0;
+}
+
 // Bytes of all that evaluation made: of shapes with the facts that the proof will add.
 static std::size_t held(const Interpreter &ev) {
-    return ev.made + ev.scene.graph.bytes() + ev.scene.shapes.bytes() +
+    return ev.made + ev.scene.graph.bytes() + ev.scene.shapes.bytes() + bytes_of_long_field(ev) +
            ev.closures.size() * sizeof(Closure) + ev.frame_count * (sizeof(Frame) + 128) +
            ev.matrices.size() * sizeof(ev.matrices[0]) +
            ev.scene.shapes.materials.size() * sizeof(ir::Material) +
@@ -231,7 +238,8 @@ bool has_room(Interpreter &ev, Span place, std::size_t bytes) {
     const std::size_t most = ev.options.limits.memory * mebibyte, now = held(ev);
     if (now <= most && bytes <= most - now) return true;
     return refuse(ev, Code::MemoryLimit, place, "this scene takes more memory than is allowed",
-                  &Limits::memory, "look for a list or a string that grows with every iteration");
+                  &Limits::memory,
+                  "look for a list, a string or a field that grows with every iteration");
 }
 
 Room room_left(const Interpreter &ev) {

@@ -145,7 +145,7 @@ std::vector<Hostile> hostile_scenes() {
         {"1.5 million lines", "memory-limit", lines(1'500'000, [](int) { return "sphere(1)"; })},
         {"a loop without end", "loop-limit",
          "fn f() {\n  var i = 0\n  while i >= 0 limit 2000000000 { i = 1 }\n  i\n}\nsphere(f())\n"},
-        {"a field's loop without end", "loop-limit",
+        {"a field's loop without end", "memory-limit",
          "implicit(p => {\n  var x = p.x\n  var i = 0\n  while i < 2000000000 limit 2000000000 {\n"
          "    i = i + 1\n    x = x * 0.5\n  }\n  length(p) - 1 + 0.1 * x\n})\n"},
         {"100,000 names in one block", "",
@@ -169,6 +169,10 @@ std::vector<Hostile> hostile_scenes() {
         {"70 messages of 8 MB", "",
          twice + "let s = d(\"abcdefgh\", 20)\n" + lines(70, [](int) { return "print(s)"; }) +
              "sphere(1)\n"},
+        {"a field of 700,000 terms", "memory-limit",
+         "implicit(p => fold([for i in 0..8000 { i }], 0.0, (a, i) => a" +
+             lines(90, [](int k) { return fmt::format(" + sin({} * p.x + i)", k); }) +
+             "), lipschitz: 1e9, within: ball(1))\n"},
         {"a default that calls itself", "recursion-limit", "fn f(x = f()) = x\nsphere(f())\n"},
     };
 }
