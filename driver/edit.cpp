@@ -39,7 +39,7 @@ const lang::Param *param_named(const Tree &tree, std::string_view name) {
 // The unit of the first number in an expression that has one: `-30deg`, `[0, 45deg, 0]`.
 std::string unit_in(const lang::Ast &ast, lang::ExprId id) {
     const lang::ExprKind &kind = ast.exprs[id].kind;
-    if (const auto *number = std::get_if<lang::Number>(&kind)) return number->unit;
+    if (const auto *number = std::get_if<lang::Number>(&kind)) return std::string(number->unit);
     if (const auto *unary = std::get_if<lang::Unary>(&kind)) return unit_in(ast, unary->operand);
     if (const auto *list = std::get_if<lang::List>(&kind))
         for (const lang::ExprId item : list->items)

@@ -5,6 +5,7 @@
 #include "base/ids.h"
 #include "base/source.h"
 
+#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,9 +21,27 @@ using ExprId = Id<Expr>;
 using BlockId = Id<Block>;
 using FunctionId = Id<Function>;
 
+// Texts that a tree's nodes read. None moves while others are added, or when the tree is moved;
+// a tree is never copied.
+class Texts {
+  public:
+    Texts() = default;
+    Texts(Texts &&) = default;
+    Texts &operator=(Texts &&) = default;
+
+    std::string_view add(std::string text) { return texts_.emplace_back(std::move(text)); }
+    const std::string &operator[](std::uint32_t i) const { return texts_[i]; }
+    std::size_t size() const { return texts_.size(); }
+    auto begin() const { return texts_.begin(); }
+    auto end() const { return texts_.end(); }
+
+  private:
+    std::deque<std::string> texts_;
+};
+
 // A name and where it stands.
 struct Identifier {
-    std::string text;
+    std::string_view text;
     Span span;
     std::uint32_t word = 0; // index into Ast::words
 };
@@ -61,7 +80,7 @@ struct TypeExpr {
     enum class Kind { Name, List, Function };
     Kind kind = Kind::Name;
     Span span;
-    std::string name; // Name: as written, "float", "shape", …
+    std::string_view name; // Name: as written, "float", "shape", …
     TypeName named = TypeName::Unknown;
     bool in_radians = false;         // Name: `angle` (a float) and `angles` (a vec3)
     std::optional<double> lipschitz; // Name, `shape<L>` only
@@ -95,10 +114,10 @@ struct Poison {}; // a place where the parser already reported an error
 struct Number {
     double value = 0; // in radians where an angle's unit stood behind it
     bool is_int = false;
-    std::string unit; // "", "deg", "rad" or "turn"
+    std::string_view unit; // "", "deg", "rad" or "turn"
 };
 struct String {
-    std::string value;
+    std::string_view value;
 };
 struct Bool {
     bool value = false;
@@ -107,7 +126,7 @@ struct Color {
     double rgba[4] = {0, 0, 0, 1};
 }; // sRGB, 0..1, as in the text
 struct Name {
-    std::string text;
+    std::string_view text;
     std::uint32_t word = 0; // index into Ast::words
 };
 struct List {
@@ -124,20 +143,24 @@ struct Unary {
     UnaryOp op;
     ExprId operand;
 };
-// `a + b - c` is one node: operands a, b, c and ops +, -. All ops of a node have one precedence.
+struct Operand {
+    ExprId value;
+    BinaryOp op{}; // before it; of the first one nothing
+    Span op_span;
+};
+// `a + b - c` is one node: operands a, + b and - c. All ops of a node have one precedence.
 // Comparisons and `^` have exactly two operands.
 struct Binary {
-    std::vector<ExprId> operands;
-    std::vector<BinaryOp> ops;
-    std::vector<Span> op_spans;
+    std::vector<Operand> operands;
+    BinaryOp op() const { return operands[1].op; } // the first
 };
 struct Argument {
     std::optional<Identifier> name;
     ExprId value;
 };
 struct Call {
-    ExprId callee; // a Member for `a.f(b)`
     std::vector<Argument> arguments;
+    ExprId callee;                   // a Member for `a.f(b)`
     std::optional<BlockId> trailing; // `union { … }`: a contributing block
     bool has_parentheses = true;     // false for `union { … }`
 };
@@ -178,7 +201,7 @@ struct Expr {
 // A parameter of a function, with its type and its default where they are given.
 struct Parameter {
     Identifier name;
-    std::optional<TypeExpr> type;
+    const TypeExpr *type = nullptr; // or none
     std::optional<ExprId> default_value;
 };
 
@@ -187,12 +210,12 @@ struct Parameter {
 struct Function {
     std::optional<Identifier> name; // none for a lambda
     std::vector<Parameter> parameters;
-    std::optional<TypeExpr> result;
+    const TypeExpr *result = nullptr; // or none
     BlockId body;
     Span span;                       // all of it
     Span head;                       // `fn name(…) -> type`, or the lambda's parameters
     bool body_is_expression = false; // written with `=` or without braces
-    std::string doc;                 // the `///` comment lines directly above, without the slashes
+    std::string_view doc;            // the `///` comment lines directly above, without the slashes
 };
 
 struct ExprStmt {
@@ -200,13 +223,13 @@ struct ExprStmt {
 };
 struct Let {
     Identifier name;
-    std::optional<TypeExpr> type;
+    const TypeExpr *type = nullptr; // or none
     ExprId value;
-    std::string doc;
+    std::string_view doc;
 };
 struct Var {
     Identifier name;
-    std::optional<TypeExpr> type;
+    const TypeExpr *type = nullptr; // or none
     ExprId value;
 };
 // `target op= value`; op is empty for `=`. The target is a name followed by members and indices.
@@ -221,13 +244,13 @@ struct FunctionDecl {
 // `param name = value in low..high "label"`; the range's ends are included.
 struct Param {
     Identifier name;
-    std::optional<TypeExpr> type;
+    const TypeExpr *type = nullptr; // or none
     ExprId value;
     std::optional<ExprId> low, high;
-    std::optional<std::string> label;
+    std::optional<std::string_view> label;
 };
 struct Import {
-    std::string path;
+    std::string_view path;
     Span path_span;
     std::optional<Identifier> as;
 };
@@ -263,14 +286,16 @@ struct Block {
     Span span;
 };
 
-// A whole text as arrays of expressions, blocks and functions.
+// A whole text as arrays of expressions, blocks, functions and types.
 struct Ast {
     SourceId source;
     Arena<Expr> exprs;
     Arena<Block> blocks;
     Arena<Function> functions;
-    BlockId root;                   // the file
-    std::vector<std::string> words; // the file's names, each once
+    BlockId root;               // the file
+    Texts words;                // its names, each once
+    Texts others;               // its strings and comments, as their nodes have them
+    std::deque<TypeExpr> types; // as their nodes have them
 };
 
 } // namespace fathom::lang

@@ -60,7 +60,7 @@ void Builder::push(ExprKind kind, Span span, std::uint32_t height) {
 
 Builder::Item Builder::pop_item() { return take_back(items_); }
 std::optional<Builder::Item> Builder::pop_maybe_item() { return take_back(maybe_items_); }
-std::optional<TypeExpr> Builder::pop_maybe_type() { return take_back(maybe_types_); }
+const TypeExpr *Builder::pop_maybe_type() { return take_back(maybe_types_); }
 BlockId Builder::pop_block() { return take_back(blocks_); }
 
 Identifier Builder::pop_name() { return *take_back(names_); }
@@ -99,7 +99,7 @@ std::vector<std::string_view> type_names() {
 void Builder::type_name(Index at) {
     TypeExpr type;
     type.span = span(at);
-    type.name = text(at);
+    type.name = ast_.others.add(std::string(text(at)));
     type.named = type_named(type.name);
     type.in_radians = type.name == "angle" || type.name == "angles";
     types_.push_back(std::move(type));
@@ -130,17 +130,19 @@ void Builder::type_function(Index first, Index last) {
     types_.push_back(std::move(function));
 }
 
-void Builder::some_type() { maybe_types_.emplace_back(take_back(types_)); }
+void Builder::some_type() { maybe_types_.push_back(&ast_.types.emplace_back(take_back(types_))); }
 
 // -- operands ------------------------------------------------------------------------------------
 
 void Builder::number(Index at) {
     const std::optional<NumberWord> number = read_number(text(at));
     assert(number);
-    push(Number{number->value, number->is_int, std::string(number->unit)}, span(at), 1);
+    push(Number{number->value, number->is_int, number->unit}, span(at), 1);
 }
 
-void Builder::string(Index at) { push(String{read_string(text(at))}, span(at), 1); }
+void Builder::string(Index at) {
+    push(String{ast_.others.add(read_string(text(at)))}, span(at), 1);
+}
 
 void Builder::color(Index at) {
     Color color;
@@ -153,7 +155,8 @@ void Builder::no(Index at) { push(Bool{false}, span(at), 1); }
 void Builder::poison(Index at) { push(Poison{}, span(at), 1); }
 
 void Builder::name(Index at) {
-    push(Name{std::string(text(at)), word(text(at))}, span(at), 1);
+    const std::uint32_t name = word(text(at));
+    push(Name{ast_.words[name], name}, span(at), 1);
     if (is_foreign_value(text(at))) foreign_names_.push_back({items_.back().id, span(at)});
 }
 
@@ -213,8 +216,8 @@ void Builder::declared_name(Index at) {
 
 void Builder::parameter() {
     const std::optional<Item> value = pop_maybe_item();
-    std::optional<TypeExpr> type = pop_maybe_type();
-    parameters_.push_back({pop_name(), std::move(type), {}});
+    const TypeExpr *type = pop_maybe_type();
+    parameters_.push_back({pop_name(), type, {}});
     if (value) parameters_.back().default_value = value->id;
 }
 
@@ -243,7 +246,7 @@ void Builder::value_body() {
     expression_body_ = true;
 }
 
-FunctionId Builder::pop_function(std::optional<Identifier> name, std::optional<TypeExpr> result,
+FunctionId Builder::pop_function(std::optional<Identifier> name, const TypeExpr *result,
                                  Span whole) {
     const Head head = take_back(heads_);
     in_function_ = head.outer_in_function;
@@ -253,7 +256,7 @@ FunctionId Builder::pop_function(std::optional<Identifier> name, std::optional<T
     function.parameters.assign(std::make_move_iterator(parameters),
                                std::make_move_iterator(parameters_.end()));
     parameters_.erase(parameters, parameters_.end());
-    function.result = std::move(result);
+    function.result = result;
     function.body = pop_block();
     function.span = whole;
     function.head = head.span;
@@ -353,7 +356,7 @@ void Builder::trailing(Index first, Index last) {
     Expr &expr = ast_.exprs[callee.id];
     Call *call = std::get_if<Call>(&expr.kind);
     if (!call || expr.parenthesized || call->trailing) {
-        push(Call{callee.id, {}, block, false}, whole, tall);
+        push(Call{{}, callee.id, block, false}, whole, tall);
         return;
     }
     if (const Name *name = std::get_if<Name>(&ast_.exprs[call->callee].kind);

@@ -65,7 +65,7 @@ class Builder : ForeignSyntax {
     void type_function_open() { type_marks_.push_back(types_.size()); }
     void type_function(Index first, Index last);
     void some_type();
-    void no_type() { maybe_types_.emplace_back(); }
+    void no_type() { maybe_types_.push_back(nullptr); }
 
     // Operands.
     void number(Index at);
@@ -159,17 +159,19 @@ class Builder : ForeignSyntax {
 
     using TokenReading::span;
     Span span(const Item &item) const { return {id_, item.begin, item.end}; }
-    Identifier identifier(Index at) { return {std::string(text(at)), span(at), word(text(at))}; }
+    Identifier identifier(Index at) {
+        const std::uint32_t name = word(text(at));
+        return {ast_.words[name], span(at), name};
+    }
 
     ExprId add(ExprKind kind, Span span, std::uint32_t height);
     void push(ExprKind kind, Span span, std::uint32_t height);
     Item pop_item();
     std::optional<Item> pop_maybe_item();
     Identifier pop_name();
-    std::optional<TypeExpr> pop_maybe_type();
+    const TypeExpr *pop_maybe_type();
     BlockId pop_block();
-    FunctionId pop_function(std::optional<Identifier> name, std::optional<TypeExpr> result,
-                            Span whole);
+    FunctionId pop_function(std::optional<Identifier> name, const TypeExpr *result, Span whole);
     std::uint32_t height(ExprId id) const { return expr_heights_[id.index]; }
     std::uint32_t height(BlockId id) const { return block_heights_[id.index]; }
     void reduce_above(int precedence);
@@ -179,7 +181,7 @@ class Builder : ForeignSyntax {
     BlockId add_block(std::size_t first_stmt, Span span);
     void declare_poison(Index name);
     void add_stmt(StmtKind kind, Span span, std::uint32_t height);
-    std::string doc_above(Index at) const;
+    std::string_view doc_above(Index at);
     bool is_target(ExprId id) const;
     bool names_function(ExprId id);
     void drop(const Mark &mark);
@@ -197,7 +199,7 @@ class Builder : ForeignSyntax {
     std::vector<Frame> frames_;
     std::vector<std::optional<Identifier>> names_;
     std::vector<TypeExpr> types_;
-    std::vector<std::optional<TypeExpr>> maybe_types_;
+    std::vector<const TypeExpr *> maybe_types_;
     std::vector<std::size_t> type_marks_;
     std::vector<Argument> arguments_;
     std::vector<std::size_t> argument_marks_;

@@ -52,7 +52,7 @@ void Builder::block_close(Index first, Index last) {
 // -- statements ----------------------------------------------------------------------------------
 
 // The `///` lines directly above the line of a token, without slashes.
-std::string Builder::doc_above(Index at) const {
+std::string_view Builder::doc_above(Index at) {
     const std::string_view all = source_.text;
     const auto line_start = [&](std::size_t offset) {
         const std::size_t end = offset == 0 ? std::string_view::npos : all.rfind('\n', offset - 1);
@@ -86,35 +86,35 @@ std::string Builder::doc_above(Index at) const {
         if (line != lines.rbegin()) doc += '\n';
         doc += *line;
     }
-    return doc;
+    return doc.empty() ? std::string_view() : ast_.others.add(std::move(doc));
 }
 
 void Builder::let(Index first, Index) {
     Item value = pop_item();
     if (runs_on(first + 1, value.end)) value.id = add(Poison{}, span(value), 1);
-    std::optional<TypeExpr> type = pop_maybe_type();
-    add_stmt(Let{pop_name(), std::move(type), value.id, doc_above(first)},
+    const TypeExpr *type = pop_maybe_type();
+    add_stmt(Let{pop_name(), type, value.id, doc_above(first)},
              {id_, token(first).begin, value.end}, height(value.id));
 }
 
 void Builder::var(Index first, Index) {
     const Item value = pop_item();
-    std::optional<TypeExpr> type = pop_maybe_type();
-    add_stmt(Var{pop_name(), std::move(type), value.id}, {id_, token(first).begin, value.end},
+    const TypeExpr *type = pop_maybe_type();
+    add_stmt(Var{pop_name(), type, value.id}, {id_, token(first).begin, value.end},
              height(value.id));
 }
 
 void Builder::function(Index first, Index last) {
     shallower();
-    std::optional<TypeExpr> result = pop_maybe_type();
+    const TypeExpr *result = pop_maybe_type();
     const std::uint32_t body_height = height(blocks_.back());
-    const FunctionId function = pop_function(pop_name(), std::move(result), span(first, last));
+    const FunctionId function = pop_function(pop_name(), result, span(first, last));
     ast_.functions[function].doc = doc_above(first);
     add_stmt(FunctionDecl{function}, span(first, last), 1 + body_height);
 }
 
 void Builder::param_label(Index at) {
-    names_.emplace_back(Identifier{read_string(text(at)), span(at)});
+    names_.emplace_back(Identifier{ast_.others.add(read_string(text(at))), span(at)});
 }
 
 void Builder::param(Index first, Index last) {
@@ -156,7 +156,7 @@ void Builder::param(Index first, Index last) {
 void Builder::import(Index first, Index last) {
     Import import;
     import.as = take_back(names_);
-    import.path = read_string(text(first + 1));
+    import.path = ast_.others.add(read_string(text(first + 1)));
     import.path_span = span(first + 1);
     add_stmt(std::move(import), span(first, last), 1);
 }
@@ -245,7 +245,7 @@ void Builder::assignment() {
         }
         if (at >= let_until_) // else told at the `let` that is for all of them
             foreign(span(target), "a new name is bound with `let`")
-                .help("write `let " + name->text + " = …`",
+                .help("write `let " + std::string(name->text) + " = …`",
                       {{{id_, target.begin, target.begin}, "let "}});
         bound_at_ = target.begin;
         Identifier bound{name->text, span(target), name->word};

@@ -37,8 +37,8 @@ std::string_view op_text(BinaryOp op) {
 std::string type_text(const TypeExpr &type) {
     switch (type.kind) {
     case TypeExpr::Kind::Name:
-        return type.lipschitz ? type.name + "<" + format_shortest(*type.lipschitz) + ">"
-                              : type.name;
+        return std::string(type.name) +
+               (type.lipschitz ? "<" + format_shortest(*type.lipschitz) + ">" : "");
     case TypeExpr::Kind::List: return "[" + type_text(type.items.at(0)) + "]";
     case TypeExpr::Kind::Function: break;
     }
@@ -48,9 +48,7 @@ std::string type_text(const TypeExpr &type) {
     return out + ") -> " + type_text(type.items.back());
 }
 
-std::string type_suffix(const std::optional<TypeExpr> &type) {
-    return type ? ": " + type_text(*type) : "";
-}
+std::string type_suffix(const TypeExpr *type) { return type ? ": " + type_text(*type) : ""; }
 
 class Dump {
   public:
@@ -88,12 +86,12 @@ class Dump {
 void Dump::function(FunctionId id, std::string_view head) {
     const Function &f = ast_.functions[id];
     std::string text(head);
-    if (f.name) text += " " + f.name->text;
+    if (f.name) text += " " + std::string(f.name->text);
     if (f.result) text += " -> " + type_text(*f.result);
     if (!f.doc.empty()) text += " doc " + for_json(f.doc);
     node(text, [&] {
         for (const Parameter &p : f.parameters) {
-            node("parameter " + p.name.text + type_suffix(p.type), [&] {
+            node("parameter " + std::string(p.name.text) + type_suffix(p.type), [&] {
                 if (p.default_value) expr(*p.default_value);
             });
         }
@@ -105,7 +103,7 @@ void Dump::call(const Call &call) {
     node(call.has_parentheses ? "call" : "call without parentheses", [&] {
         expr(call.callee);
         for (const Argument &a : call.arguments)
-            part(a.name ? "argument " + a.name->text : "argument", a.value);
+            part(a.name ? "argument " + std::string(a.name->text) : "argument", a.value);
         if (call.trailing) node("block", [&] { block(*call.trailing); });
     });
 }
@@ -118,7 +116,7 @@ void Dump::expr(ExprId id) {
                    [&](const Number &n) {
                        std::string text =
                            (n.is_int ? "int " : "number ") + format_shortest(n.value);
-                       if (!n.unit.empty()) text += " from " + n.unit;
+                       if (!n.unit.empty()) text += " from " + std::string(n.unit);
                        line(text);
                    },
                    [&](const String &s) { line("string " + for_json(s.value)); },
@@ -128,7 +126,7 @@ void Dump::expr(ExprId id) {
                        for (const double channel : c.rgba) text += " " + format_shortest(channel);
                        line(text);
                    },
-                   [&](const Name &n) { line("name " + n.text); },
+                   [&](const Name &n) { line("name " + std::string(n.text)); },
                    [&](const List &l) {
                        node("list", [&] {
                            for (const ExprId item : l.items) expr(item);
@@ -146,9 +144,10 @@ void Dump::expr(ExprId id) {
                    },
                    [&](const Binary &b) {
                        std::string text = "binary";
-                       for (const BinaryOp op : b.ops) text += " " + std::string(op_text(op));
+                       for (std::size_t i = 1; i < b.operands.size(); ++i)
+                           text += " " + std::string(op_text(b.operands[i].op));
                        node(text, [&] {
-                           for (const ExprId operand : b.operands) expr(operand);
+                           for (const Operand &operand : b.operands) expr(operand.value);
                        });
                    },
                    [&](const Call &c) { call(c); },
@@ -158,7 +157,7 @@ void Dump::expr(ExprId id) {
                            expr(i.index);
                        });
                    },
-                   [&](const Member &m) { part("member " + m.name.text, m.object); },
+                   [&](const Member &m) { part("member " + std::string(m.name.text), m.object); },
                    [&](const Lambda &l) { function(l.function, "lambda"); },
                    [&](const If &i) {
                        node("if", [&] {
@@ -175,56 +174,58 @@ void Dump::expr(ExprId id) {
 }
 
 void Dump::stmt(const Stmt &stmt) {
-    std::visit(overloaded{
-                   [&](const Bad &) { line("bad"); },
-                   [&](const ExprStmt &s) { expr(s.value); },
-                   [&](const Let &s) {
-                       std::string text = "let " + s.name.text + type_suffix(s.type);
-                       if (!s.doc.empty()) text += " doc " + for_json(s.doc);
-                       part(text, s.value);
-                   },
-                   [&](const Var &s) { part("var " + s.name.text + type_suffix(s.type), s.value); },
-                   [&](const Assign &s) {
-                       node("assign " + (s.op ? std::string(op_text(*s.op)) : std::string()) + "=",
-                            [&] {
-                                expr(s.target);
-                                expr(s.value);
-                            });
-                   },
-                   [&](const FunctionDecl &s) { function(s.function, "fn"); },
-                   [&](const Param &s) {
-                       std::string text = "param " + s.name.text + type_suffix(s.type);
-                       if (s.label) text += " " + for_json(*s.label);
-                       node(text, [&] {
-                           expr(s.value);
-                           if (s.low) part("low", *s.low);
-                           if (s.high) part("high", *s.high);
-                       });
-                   },
-                   [&](const Import &s) {
-                       line("import " + for_json(s.path) + (s.as ? " as " + s.as->text : ""));
-                   },
-                   [&](const For &s) {
-                       node("for " + s.variable.text, [&] {
-                           expr(s.sequence);
-                           node("body", [&] { block(s.body); });
-                       });
-                   },
-                   [&](const While &s) {
-                       node("while", [&] {
-                           expr(s.condition);
-                           if (s.limit) part("limit", *s.limit);
-                           node("body", [&] { block(s.body); });
-                       });
-                   },
-                   [&](const Break &) { line("break"); },
-                   [&](const Return &s) {
-                       node("return", [&] {
-                           if (s.value) expr(*s.value);
-                       });
-                   },
-               },
-               stmt.kind);
+    std::visit(
+        overloaded{
+            [&](const Bad &) { line("bad"); },
+            [&](const ExprStmt &s) { expr(s.value); },
+            [&](const Let &s) {
+                std::string text = "let " + std::string(s.name.text) + type_suffix(s.type);
+                if (!s.doc.empty()) text += " doc " + for_json(s.doc);
+                part(text, s.value);
+            },
+            [&](const Var &s) {
+                part("var " + std::string(s.name.text) + type_suffix(s.type), s.value);
+            },
+            [&](const Assign &s) {
+                node("assign " + (s.op ? std::string(op_text(*s.op)) : std::string()) + "=", [&] {
+                    expr(s.target);
+                    expr(s.value);
+                });
+            },
+            [&](const FunctionDecl &s) { function(s.function, "fn"); },
+            [&](const Param &s) {
+                std::string text = "param " + std::string(s.name.text) + type_suffix(s.type);
+                if (s.label) text += " " + for_json(*s.label);
+                node(text, [&] {
+                    expr(s.value);
+                    if (s.low) part("low", *s.low);
+                    if (s.high) part("high", *s.high);
+                });
+            },
+            [&](const Import &s) {
+                line("import " + for_json(s.path) + (s.as ? " as " + std::string(s.as->text) : ""));
+            },
+            [&](const For &s) {
+                node("for " + std::string(s.variable.text), [&] {
+                    expr(s.sequence);
+                    node("body", [&] { block(s.body); });
+                });
+            },
+            [&](const While &s) {
+                node("while", [&] {
+                    expr(s.condition);
+                    if (s.limit) part("limit", *s.limit);
+                    node("body", [&] { block(s.body); });
+                });
+            },
+            [&](const Break &) { line("break"); },
+            [&](const Return &s) {
+                node("return", [&] {
+                    if (s.value) expr(*s.value);
+                });
+            },
+        },
+        stmt.kind);
 }
 
 } // namespace

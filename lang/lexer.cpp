@@ -58,12 +58,13 @@ std::optional<NumberWord> read_number(std::string_view word) {
     number.is_int = number.digits.find_first_not_of("0123456789") == std::string_view::npos;
     if (number.unit.empty()) return number;
     number.is_int = false;
-    if (number.unit == "deg")
-        number.value *= std::numbers::pi / 180;
-    else if (number.unit == "turn")
-        number.value *= 2 * std::numbers::pi;
-    else if (number.unit != "rad")
-        return std::nullopt;
+    constexpr std::pair<std::string_view, double> units[] = {
+        {"deg", std::numbers::pi / 180}, {"turn", 2 * std::numbers::pi}, {"rad", 1}};
+    const auto *unit =
+        std::ranges::find(units, number.unit, &std::pair<std::string_view, double>::first);
+    if (unit == std::end(units)) return std::nullopt;
+    number.unit = unit->first;
+    number.value *= unit->second;
     return number;
 }
 

@@ -56,7 +56,8 @@ bool is_keyword_text(std::string_view word);
 struct NumberWord {
     double value = 0;
     bool is_int = false;
-    std::string_view digits, unit;
+    std::string_view digits; // of the word
+    std::string_view unit;   // "", "deg", "rad" or "turn", of no text
 };
 std::optional<NumberWord> read_number(std::string_view word);
 std::string read_string(std::string_view quoted); // escapes resolved

@@ -143,12 +143,10 @@ void Builder::reduce_top() {
     }
     Binary binary;
     binary.operands.reserve(count + 1);
-    binary.ops.reserve(count);
-    binary.op_spans.reserve(count);
-    for (std::size_t i = base; i < items_.size(); ++i) binary.operands.push_back(items_[i].id);
-    for (std::size_t i = first; i < ops_.size(); ++i) {
-        binary.ops.push_back(ops_[i].binary);
-        binary.op_spans.push_back(span(ops_[i].at));
+    binary.operands.push_back({items_[base].id, {}, {}});
+    for (std::size_t i = 0; i < count; ++i) {
+        const Op &op = ops_[first + i];
+        binary.operands.push_back({items_[base + 1 + i].id, op.binary, span(op.at)});
     }
     ops_.resize(first);
     items_.resize(base);

@@ -44,7 +44,7 @@ TokenReading::TokenReading(const Source &source, SourceId id, const Tokens &toke
 std::uint32_t TokenReading::word(std::string_view text) {
     const auto [it, added] =
         words_.try_emplace(text, static_cast<std::uint32_t>(ast_.words.size()));
-    if (added) ast_.words.emplace_back(text);
+    if (added) ast_.words.add(std::string(text));
     return it->second;
 }
 
@@ -88,7 +88,7 @@ TokenReading::Index TokenReading::enclosing(Index at) const {
 }
 
 // Whether a name was declared above, anywhere: then an assignment means to change it.
-bool TokenReading::is_declared(const std::string &name) {
+bool TokenReading::is_declared(std::string_view name) {
     for (; known_ < declared_.size(); ++known_) known_names_.insert(declared_[known_]);
     return known_names_.count(name) > 0;
 }

@@ -104,7 +104,7 @@ class TokenReading {
     bool ends_statement(Index at) const;
     Index statement_end(Index first) const;
     Index enclosing(Index at) const;
-    bool is_declared(const std::string &name);
+    bool is_declared(std::string_view name);
     std::uint32_t word(std::string_view text); // of a part of the source
 
     const Source &source_;

@@ -199,7 +199,7 @@ class Remedy {
             unknown, [&](std::size_t i) { return axis_of(args_[i].name->text, function_) != ' '; });
         const bool all_axes = axes == (function_ == "rectangle" ? 2 : 3);
         for (std::size_t i : unknown) {
-            const std::string &name = args_[i].name->text;
+            const std::string name(args_[i].name->text);
             const bool is_letter = all_axes ? axis_of(name, function_) != ' '
                                             : name == "x" || name == "y" || name == "z";
             (is_letter ? letters : others).push_back(i);
@@ -252,7 +252,7 @@ class Remedy {
             const Argument &a = args_[i];
             if (a.value.kind == ValueKind::Shape && i == 0) continue;
             if (a.trailing || !row.source) return false;
-            const std::string name = a.name ? a.name->text : std::string();
+            const std::string name(a.name ? a.name->text : std::string_view());
             const Span whole = whole_argument(a);
             row = count.empty() && axis.empty() && row == args_[0].span ? whole : join(row, whole);
             if (names_an_axis(name) || name == "along" || name == "dir")
@@ -284,7 +284,7 @@ class Remedy {
     // `sphere(1, color: red)`, `torus(1, 0.2, axis: Z)`: what is done behind the call.
     bool behind(std::size_t i) {
         const Argument &a = args_[i];
-        const std::string &name = a.name->text;
+        const std::string name(a.name->text);
         const bool is_setting = std::ranges::find(no_shapes, function_) != no_shapes.end();
         if (is_setting || args_.back().trailing || has(formals_, "at") || has(formals_, "material"))
             return false;
@@ -323,7 +323,7 @@ class Remedy {
     }
 
     // What is said otherwise, or set elsewhere.
-    bool elsewhere(const std::string &name, std::size_t i) {
+    bool elsewhere(std::string_view name, std::size_t i) {
         const bool camera = function_ == "camera";
         const bool diameter = name == "d" || name == "diameter" || name == "dia";
         const bool end = name == "r1" || name == "r2" || name == "d1" || name == "d2";
@@ -427,7 +427,7 @@ class Remedy {
 
     // An argument of ours by another name.
     void ours(std::size_t i) {
-        const std::string &name = args_[i].name->text;
+        const std::string name(args_[i].name->text);
         std::string taken = our_argument(name, formals_);
         if (taken.empty() && way_from_elsewhere(name).empty()) taken = wanted_still();
         if (const auto way = way_from_elsewhere(name); taken.empty() && !way.empty())

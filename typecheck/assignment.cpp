@@ -167,7 +167,7 @@ static bool same_type(Interpreter &ev, Value &old, Value &value) {
 
 // For a name of the scene that is assigned to, or a part of it.
 static void help_with_let(const Interpreter &ev, const File &ast, const lang::Assign &node,
-                          Diagnostic &d, const std::string &name, const std::vector<Accessor> &path,
+                          Diagnostic &d, std::string_view name, const std::vector<Accessor> &path,
                           const Value &value) {
     std::string fresh;
     std::vector<Edit> edits;
@@ -198,7 +198,7 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
     for (;;) {
         const lang::Expr &e = ast.exprs[target];
         if (auto *m = std::get_if<lang::Member>(&e.kind)) {
-            path.push_back({false, m->name.text, {}, m->name.span});
+            path.push_back({false, std::string(m->name.text), {}, m->name.span});
             target = m->object;
         } else if (auto *i = std::get_if<lang::Index>(&e.kind)) {
             path.push_back({true, "", eval(ev, ast, i->index, frame), ast.exprs[i->index].span});

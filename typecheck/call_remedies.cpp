@@ -133,7 +133,7 @@ bool cone_between(const Interpreter &ev, std::span<const Argument> args,
     if (std::ranges::any_of(args, [](const Argument &a) { return !a.name || a.trailing; }))
         return false;
     for (std::size_t i : unknown) {
-        const std::string &name = args[i].name->text;
+        const std::string name(args[i].name->text);
         if (name == "r1" || name == "d1") bottom = &args[i];
         if (name == "r2" || name == "d2") top = &args[i];
     }
@@ -302,7 +302,7 @@ std::vector<Edit> part_of_shape(Interpreter &ev, const File &ast, const lang::Me
     const auto function = look_up(ev, ev.prelude_frame, intern(ev, maker->text));
     if (!function || function->kind != ValueKind::Closure) return {};
     const std::span<const Formal> formals = formals_of(ev, ev.closures[function->id]);
-    const std::string part = member.name.text == "r" ? "radius" : member.name.text;
+    const std::string part(member.name.text == "r" ? "radius" : member.name.text);
     const lang::Argument *given = nullptr;
     for (std::size_t i = 0; i < made->arguments.size() && !given; ++i) {
         const lang::Argument &a = made->arguments[i];
@@ -336,7 +336,7 @@ std::vector<Edit> part_of_shape(Interpreter &ev, const File &ast, const lang::Me
 
 bool is_foreign_method(Interpreter &ev, const Value &object, const File &ast,
                        const lang::Member &member, const lang::Call &call, Span place) {
-    const std::string &name = member.name.text;
+    const std::string name(member.name.text);
     if (object.kind == ValueKind::Shape && name == "material") {
         Diagnostic &d = report(ev, Code::UnknownMember, member.name.span,
                                "`material` makes a material, and is no function of a shape");

@@ -354,12 +354,13 @@ std::vector<LibraryEntry> library_entries(const std::vector<LibraryFile> &librar
                 const lang::Function &fn = ast.functions[f->function];
                 if (!fn.name || fn.name->text[0] == '_') continue;
                 std::string head = on_one_line(text_of(sources, id, fn.head));
-                out.push_back({fn.name->text, head.starts_with("fn ") ? head.substr(3) : head,
-                               fn.doc, std::string(file.name), module});
+                out.push_back({std::string(fn.name->text),
+                               head.starts_with("fn ") ? head.substr(3) : head, std::string(fn.doc),
+                               std::string(file.name), module});
             } else if (auto *l = std::get_if<lang::Let>(&s.kind)) {
-                if (l->name.text[0] != '_')
+                if (const std::string name(l->name.text); name[0] != '_')
                     out.push_back(
-                        {l->name.text, l->name.text, l->doc, std::string(file.name), module});
+                        {name, name, std::string(l->doc), std::string(file.name), module});
             }
         }
     }

@@ -13,7 +13,7 @@ namespace fathom::typecheck {
 using ir::Op;
 using ir::Type;
 
-std::optional<std::vector<int>> swizzle_indices(const std::string &letters, int size) {
+std::optional<std::vector<int>> swizzle_indices(std::string_view letters, int size) {
     if (letters.empty() || letters.size() > 4) return std::nullopt;
     for (const char *set : {"xyzw", "rgba", "stpq"}) {
         std::vector<int> indices;
@@ -25,7 +25,7 @@ std::optional<std::vector<int>> swizzle_indices(const std::string &letters, int 
     return std::nullopt;
 }
 
-Value swizzle(Interpreter &ev, const Value &v, const std::string &letters, Span place) {
+Value swizzle(Interpreter &ev, const Value &v, std::string_view letters, Span place) {
     Type type = numeric_type(ev, v);
     auto indices =
         ir::is_vector(type) ? swizzle_indices(letters, ir::components(type)) : std::nullopt;

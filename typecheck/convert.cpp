@@ -19,7 +19,7 @@ std::string type_text(const lang::TypeExpr &type) {
     switch (type.kind) {
     case lang::TypeExpr::Kind::Name: // the library's own `_shape` is a shape to all others
         return type.lipschitz ? fmt::format("{}<{}>", type.name, *type.lipschitz)
-                              : type.name.substr(type.name.starts_with('_') ? 1 : 0);
+                              : std::string(type.name.substr(type.name.starts_with('_') ? 1 : 0));
     case lang::TypeExpr::Kind::List: return fmt::format("[{}]", type_text(type.items[0]));
     case lang::TypeExpr::Kind::Function: {
         std::string out = "(";

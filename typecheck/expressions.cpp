@@ -107,22 +107,23 @@ static Value combine(Interpreter &ev, ir::ShapeKind kind, const std::vector<Valu
 
 // `sphere(1) && box(1)`: the text was read as conditions, with what there is to say of `&&`.
 static void report_joined_shapes(Interpreter &ev, const lang::Binary &b) {
-    const bool is_and = b.ops[0] == lang::BinaryOp::And;
+    const bool is_and = b.op() == lang::BinaryOp::And;
     std::vector<Edit> edits;
-    for (const Span op : b.op_spans) {
+    for (std::size_t i = 1; i < b.operands.size(); ++i) {
+        const Span op = b.operands[i].op_span;
         if (ev.quiet == 0) ev.diagnostics.withdraw(Code::ForeignSyntax, op);
         edits.push_back({op, is_and ? "&" : "|"});
     }
-    report(ev, Code::TypeMismatch, b.op_spans[0],
+    report(ev, Code::TypeMismatch, b.operands[1].op_span,
            is_and ? "what shapes have in common is written with `&`" : "shapes are united with `|`")
         .help(is_and ? "write `&`" : "write `|`", std::move(edits));
 }
 
 static Value eval_logic(Interpreter &ev, const File &ast, const lang::Binary &b,
                         std::uint32_t frame) {
-    bool is_and = b.ops[0] == lang::BinaryOp::And;
+    bool is_and = b.op() == lang::BinaryOp::And;
     Value total = boolean(is_and);
-    for (lang::ExprId id : b.operands) {
+    for (const auto &[id, op, op_span] : b.operands) {
         Value v = eval(ev, ast, id, frame);
         if (is_poison(v)) return v;
         if (v.kind == ValueKind::Shape) {
@@ -152,20 +153,20 @@ static std::size_t parts_of(const ir::Region &region) {
 static Value eval_binary(Interpreter &ev, const File &ast, const lang::Binary &b, Span place,
                          std::uint32_t frame) {
     using lang::BinaryOp;
-    if (b.ops[0] == BinaryOp::And || b.ops[0] == BinaryOp::Or) return eval_logic(ev, ast, b, frame);
-    if (b.ops[0] == BinaryOp::Union || b.ops[0] == BinaryOp::Intersection) {
+    if (b.op() == BinaryOp::And || b.op() == BinaryOp::Or) return eval_logic(ev, ast, b, frame);
+    if (b.op() == BinaryOp::Union || b.op() == BinaryOp::Intersection) {
         std::vector<Value> values;
         std::vector<Span> places;
-        for (lang::ExprId id : b.operands) {
+        for (const auto &[id, op, op_span] : b.operands) {
             values.push_back(eval(ev, ast, id, frame));
             places.push_back(ast.exprs[id].span);
         }
         return combine(
-            ev, b.ops[0] == BinaryOp::Union ? ir::ShapeKind::Union : ir::ShapeKind::Intersection,
+            ev, b.op() == BinaryOp::Union ? ir::ShapeKind::Union : ir::ShapeKind::Intersection,
             values, places, place);
     }
-    Value total = eval(ev, ast, b.operands[0], frame);
-    Span total_place = ast.exprs[b.operands[0]].span;
+    Value total = eval(ev, ast, b.operands[0].value, frame);
+    Span total_place = ast.exprs[b.operands[0].value].span;
     std::vector<Value>
         kept; // of `a - b - c` what is common to all: a, and the space around b and c
     std::vector<Span> kept_places;
@@ -174,12 +175,13 @@ static Value eval_binary(Interpreter &ev, const File &ast, const lang::Binary &b
             total = combine(ev, ir::ShapeKind::Intersection, std::exchange(kept, {}),
                             std::exchange(kept_places, {}), total_place);
     };
-    for (std::size_t i = 0; i < b.ops.size(); ++i) {
-        Span right_place = ast.exprs[b.operands[i + 1]].span;
-        Value right = eval(ev, ast, b.operands[i + 1], frame);
+    for (std::size_t i = 1; i < b.operands.size(); ++i) {
+        const auto &[id, op, op_span] = b.operands[i];
+        Span right_place = ast.exprs[id].span;
+        Value right = eval(ev, ast, id, frame);
         Span whole = join(total_place, right_place);
-        if (b.ops[i] != BinaryOp::Sub || !is_shape_op(right)) cut();
-        if (b.ops[i] == BinaryOp::Sub && (is_shape_op(total) || is_shape_op(right))) {
+        if (op != BinaryOp::Sub || !is_shape_op(right)) cut();
+        if (op == BinaryOp::Sub && (is_shape_op(total) || is_shape_op(right))) {
             if (is_poison(total) || is_poison(right))
                 total = is_poison(right) ? total : poison();
             else if (!is_shape_op(total) || !is_shape_op(right)) {
@@ -195,7 +197,7 @@ static Value eval_binary(Interpreter &ev, const File &ast, const lang::Binary &b
                 kept.push_back(shape_complement(ev, right, right_place));
                 kept_places.push_back(right_place);
             }
-        } else if (b.ops[i] == BinaryOp::Sub && total.kind == ValueKind::Region &&
+        } else if (op == BinaryOp::Sub && total.kind == ValueKind::Region &&
                    right.kind == ValueKind::Region) {
             const std::size_t size =
                 parts_of(ev.regions[total.id]) + parts_of(ev.regions[right.id]);
@@ -208,7 +210,7 @@ static Value eval_binary(Interpreter &ev, const File &ast, const lang::Binary &b
             total =
                 make_value(ValueKind::Region, static_cast<std::uint32_t>(ev.regions.size() - 1));
         } else {
-            total = arithmetic(ev, b.ops[i], total, right, whole, total_place, right_place);
+            total = arithmetic(ev, op, total, right, whole, total_place, right_place);
         }
         total_place = whole;
     }
@@ -438,7 +440,7 @@ static Value eval_kind(Interpreter &ev, const File &ast, lang::ExprId id, std::u
             }
             return n.is_int && n.unit.empty() ? integer(n.value) : number(n.value);
         }
-        Value operator()(const lang::String &s) { return string_value(ev, s.value); }
+        Value operator()(const lang::String &s) { return string_value(ev, std::string(s.value)); }
         Value operator()(const lang::Bool &b) { return boolean(b.value); }
         Value operator()(const lang::Color &c) {
             if (c.rgba[3] != 1)

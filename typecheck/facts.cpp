@@ -19,7 +19,7 @@ std::string without_article(std::string text) {
 std::string signature(const lang::Function &f) {
     std::string text = "(";
     for (std::size_t i = 0; i < f.parameters.size(); ++i)
-        text += (i ? ", " : "") + f.parameters[i].name.text +
+        text += (i ? ", " : "") + std::string(f.parameters[i].name.text) +
                 (f.parameters[i].type ? ": " + type_text(*f.parameters[i].type) : "");
     return text + ")" + (f.result ? " -> " + type_text(*f.result) : "");
 }

@@ -282,7 +282,7 @@ constexpr int max_loop_iterations = 100'000;
 constexpr int max_known_sets = 8; // of one function's arguments that its body is made for
 
 // -- names.cpp
-Symbol intern(Interpreter &ev, const std::string &text);
+Symbol intern(Interpreter &ev, std::string_view text);
 std::uint32_t push_frame(Interpreter &ev, std::uint32_t parent);
 void pop_frame(Interpreter &ev, std::uint32_t frame);
 // Says of those of `hiding` so that an error names.
@@ -303,7 +303,7 @@ inline Symbol symbol_of(const File &file, const lang::Name &name) {
     return file.symbols[name.word];
 }
 std::vector<std::string> visible_names(Interpreter &ev, std::uint32_t frame);
-std::string way_inside(const std::string &path); // how a file elsewhere can be read
+std::string way_inside(std::string_view path); // how a file elsewhere can be read
 void check_names(Interpreter &ev, const File &ast, std::uint32_t module_frame);
 
 // -- report.cpp
@@ -339,8 +339,8 @@ Value logical_or(Interpreter &ev, const Value &a, const Value &b);
 Value logical_not(Interpreter &ev, const Value &a);
 std::optional<Value> select_value(Interpreter &ev, const Value &condition, const Value &a,
                                   const Value &b);
-Value swizzle(Interpreter &ev, const Value &v, const std::string &letters, Span place);
-std::optional<std::vector<int>> swizzle_indices(const std::string &letters, int size);
+Value swizzle(Interpreter &ev, const Value &v, std::string_view letters, Span place);
+std::optional<std::vector<int>> swizzle_indices(std::string_view letters, int size);
 Value make_vector(Interpreter &ev, const std::vector<Value> &parts, int size, Span place);
 std::optional<Value> element_as_known(Interpreter &ev, const Value &v, Span place,
                                       What what); // scene time demanded

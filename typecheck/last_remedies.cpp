@@ -160,11 +160,11 @@ std::string example_of(Interpreter &ev, std::string_view name, std::span<const F
     const auto function = look_up(ev, ev.prelude_frame, intern(ev, std::string(name)));
     if (function && function->kind == ValueKind::Closure) {
         const Closure c = ev.closures[function->id];
-        const std::string &doc = c.ast->functions[c.function].doc;
+        const std::string_view doc = c.ast->functions[c.function].doc;
         constexpr std::string_view mark = "Example: `";
         if (const std::size_t begin = doc.find(mark); begin != doc.npos) {
             const std::size_t first = begin + mark.size(), end = doc.find('`', first);
-            if (end != doc.npos) return doc.substr(first, end - first);
+            if (end != doc.npos) return std::string(doc.substr(first, end - first));
         }
     }
     if (formals.empty() || formals[0].name != "s") return {};

@@ -33,8 +33,7 @@ bool is_empty_list(const File &ast, lang::ExprId id) {
 }
 
 // `let l = []`, then `for … { l.push(x) }`: `let l = [for … { x }]`.
-std::vector<Edit> pushes_as_list(const File &ast, const std::string &list, Span pushed,
-                                 Span place) {
+std::vector<Edit> pushes_as_list(const File &ast, std::string_view list, Span pushed, Span place) {
     const auto inner = block_of(ast, place);
     if (!inner) return {};
     for (std::size_t i = 0; i < ast.blocks.size(); ++i) {
@@ -50,7 +49,7 @@ std::vector<Edit> pushes_as_list(const File &ast, const std::string &list, Span 
             if (!loop || !bound || loop->body != *inner) continue;
             const Span at = s.span;
             return {{bound->span, ""},
-                    {{at.source, at.begin, at.begin}, "let " + list + " = ["},
+                    {{at.source, at.begin, at.begin}, "let " + std::string(list) + " = ["},
                     {{at.source, place.begin, pushed.begin}, ""},
                     {{at.source, pushed.end, place.end}, ""},
                     {{at.source, at.end, at.end}, "]"}};
@@ -60,7 +59,7 @@ std::vector<Edit> pushes_as_list(const File &ast, const std::string &list, Span 
 }
 
 // How often something is added to the list.
-std::size_t pushes_to(const File &ast, const std::string &list) {
+std::size_t pushes_to(const File &ast, std::string_view list) {
     return static_cast<std::size_t>(std::ranges::count_if(ast.exprs, [&](const lang::Expr &e) {
         const auto *m = std::get_if<lang::Member>(&e.kind);
         const auto *of = m ? std::get_if<lang::Name>(&ast.exprs[m->object].kind) : nullptr;
@@ -79,7 +78,8 @@ std::vector<Edit> loop_of_function(const Interpreter &ev, const File &ast, Span 
     const Span block = ast.blocks[f.body].span;
     const bool braces = !f.body_is_expression && text(ev.sources, block).starts_with('{');
     const Span body = braces ? block : stmts.front().span;
-    return {{{place.source, place.begin, place.begin}, "for " + f.parameters[0].name.text + " in "},
+    const std::string name(f.parameters[0].name.text);
+    return {{{place.source, place.begin, place.begin}, "for " + name + " in "},
             {{place.source, object.end, body.begin}, braces ? " " : " { "},
             {{place.source, body.end, place.end}, braces ? "" : " }"}};
 }
@@ -90,7 +90,7 @@ std::vector<Edit> edits_of_list_method(const Interpreter &ev, const File &ast,
                                        const lang::Member &member, const lang::Call &call,
                                        Span place) {
     if (ev.quiet > 0 || is_library_place(ev, place) || ast.exprs.size() > most_exprs) return {};
-    const std::string &name = member.name.text;
+    const std::string name(member.name.text);
     const Span object = ast.exprs[member.object].span;
     if (name == "sum" && call.arguments.empty())
         return {{{place.source, place.begin, place.begin}, "fold("},

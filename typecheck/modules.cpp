@@ -179,7 +179,7 @@ static Value bring(Interpreter &ev, const lang::Import &import, std::uint32_t mo
     return unit();
 }
 
-std::string way_inside(const std::string &path) {
+std::string way_inside(std::string_view path) {
     const std::size_t slash = path.rfind('/');
     return fmt::format("if that file is yours, give its folder on the command line: `-I {}`",
                        slash == path.npos ? "."
@@ -213,8 +213,9 @@ Value import_module(Interpreter &ev, const lang::Import &import, Span, std::uint
     using Loaded = std::variant<LoadedText, LoadError>;
     if (!spend_on_lookup(ev, import.path_span, import.path)) return import_failed(ev, import);
     const auto long_name = too_long(import.path);
-    Loaded loaded =
-        long_name ? Loaded(*long_name) : ev.loader.text(import.path, ev.modules[importer].identity);
+    Loaded loaded = long_name
+                        ? Loaded(*long_name)
+                        : ev.loader.text(std::string(import.path), ev.modules[importer].identity);
     if (auto *error = std::get_if<LoadError>(&loaded)) {
         Code code = error->reason == LoadError::Reason::Outside ? Code::ImportOutside
                                                                 : Code::ImportNotFound;

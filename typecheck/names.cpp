@@ -11,9 +11,10 @@
 
 namespace fathom::typecheck {
 
-Symbol intern(Interpreter &ev, const std::string &text) {
-    auto [it, added] = ev.symbols.try_emplace(text, static_cast<Symbol>(ev.symbol_names.size()));
-    if (added) ev.symbol_names.push_back(text);
+Symbol intern(Interpreter &ev, std::string_view text) {
+    auto [it, added] =
+        ev.symbols.try_emplace(std::string(text), static_cast<Symbol>(ev.symbol_names.size()));
+    if (added) ev.symbol_names.emplace_back(text);
     return it->second;
 }
 
@@ -155,7 +156,7 @@ bool parameter_names(Interpreter &ev, const Value &f, std::vector<std::string> &
     if (f.kind == ValueKind::Closure) {
         const Closure &c = ev.closures[f.id];
         for (const lang::Parameter &p : c.ast->functions[c.function].parameters)
-            out.push_back(p.name.text);
+            out.emplace_back(p.name.text);
         return true;
     }
     if (f.kind == ValueKind::Builtin) {
@@ -174,14 +175,14 @@ struct NameWalk {
     Interpreter &ev;
     const File &ast;
     std::uint32_t frame;
-    std::vector<std::map<std::string, Span>> scopes;
+    std::vector<std::map<std::string_view, Span>> scopes;
 
-    bool local(const std::string &name) const {
+    bool local(std::string_view name) const {
         for (const auto &scope : scopes)
             if (scope.count(name)) return true;
         return false;
     }
-    bool known(const std::string &name) {
+    bool known(std::string_view name) {
         if (local(name)) return true;
         return look_up(ev, frame, intern(ev, name)).has_value();
     }
@@ -212,7 +213,7 @@ struct NameWalk {
         for (const lang::Stmt &s : b.stmts) stmt(s);
         scopes.pop_back();
     }
-    void typed(const std::optional<lang::TypeExpr> &type) {
+    void typed(const lang::TypeExpr *type) {
         if (type) check_type(ev, *type);
     }
     void stmt(const lang::Stmt &s) {
@@ -250,7 +251,7 @@ struct NameWalk {
         return value && value->kind == ValueKind::Module;
     }
     // The arguments that a call names, where the function is known and none that is local.
-    void arguments(const lang::Call &call, const std::string &name) {
+    void arguments(const lang::Call &call, std::string_view name) {
         auto value = local(name) ? std::nullopt : look_up(ev, frame, intern(ev, name));
         if (!value) return;
         std::vector<std::string> names;
@@ -279,7 +280,7 @@ struct NameWalk {
         else if (auto *u = std::get_if<lang::Unary>(&e.kind))
             expr(u->operand);
         else if (auto *b = std::get_if<lang::Binary>(&e.kind)) {
-            for (lang::ExprId operand : b->operands) expr(operand);
+            for (const lang::Operand &operand : b->operands) expr(operand.value);
         } else if (auto *call = std::get_if<lang::Call>(&e.kind)) {
             // the `f` of `a.f(b)` is found when `a` is known
             if (auto *m = std::get_if<lang::Member>(&ast.exprs[call->callee].kind)) {

@@ -82,8 +82,9 @@ static std::string same_letters(Interpreter &ev, std::uint32_t frame, const std:
     return {};
 }
 
-std::string likely_name(Interpreter &ev, std::uint32_t frame, const std::string &name,
+std::string likely_name(Interpreter &ev, std::uint32_t frame, std::string_view written,
                         const Wanted &wanted) {
+    const std::string name(written);
     const auto known = [&](std::string_view theirs) -> std::string {
         const std::string ours(name_from_elsewhere(theirs));
         const bool fit =
@@ -133,11 +134,11 @@ static bool told_before(Interpreter &ev, const std::string &name, Span place) {
     return true;
 }
 
-bool type_told_before(Interpreter &ev, const std::string &name, Span place) {
-    return told_before(ev, ":" + name, place);
+bool type_told_before(Interpreter &ev, std::string_view name, Span place) {
+    return told_before(ev, ":" + std::string(name), place);
 }
 
-bool lacking(const Interpreter &ev, const std::string &name, const std::string &near) {
+bool lacking(const Interpreter &ev, std::string_view name, const std::string &near) {
     return ev.modules[ev.current_module].lacks_names && (near.empty() || name.size() < 5);
 }
 
@@ -254,8 +255,9 @@ static bool may_be_lost(const Interpreter &ev, const std::string &name, const st
     });
 }
 
-void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place,
+void report_unknown_name(Interpreter &ev, std::uint32_t frame, std::string_view written, Span place,
                          const Wanted &wanted) {
+    const std::string name(written);
     if (std::ranges::any_of(name, [](char c) { return (c & 0x80) != 0; })) return; // letters, told
     std::string near = likely_name(ev, frame, name, wanted);
     if (name.size() == 1 && place.source && !is_whole_argument(ev, place)) near.clear();

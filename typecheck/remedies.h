@@ -15,18 +15,18 @@ struct Wanted {
 };
 
 // The name that another is likely to be meant for; empty: none.
-std::string likely_name(Interpreter &ev, std::uint32_t frame, const std::string &name,
+std::string likely_name(Interpreter &ev, std::uint32_t frame, std::string_view name,
                         const Wanted &wanted);
-void report_unknown_name(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place,
+void report_unknown_name(Interpreter &ev, std::uint32_t frame, std::string_view name, Span place,
                          const Wanted &wanted);
 // Whether an unknown type was told elsewhere in the file; then its edit is for this place too.
-bool type_told_before(Interpreter &ev, const std::string &name, Span place);
+bool type_told_before(Interpreter &ev, std::string_view name, Span place);
 // Whether so many names more may be compared with one that nobody declared: a text of nothing else
 // has thousands of them, and only the first are worth a suggestion.
 bool may_compare_names(Interpreter &ev, std::size_t count);
 // Whether a name may be one that a file which could not be read would have brought. Short names are
 // near to others by chance.
-bool lacking(const Interpreter &ev, const std::string &name, const std::string &near);
+bool lacking(const Interpreter &ev, std::string_view name, const std::string &near);
 // Adds what does to shapes what the name makes one expect, where something does: to an error about
 // a shape that was given to what takes none.
 void help_with_shape(Diagnostic &d, std::string_view name);
@@ -55,7 +55,7 @@ bool help_with_hidden(Interpreter &ev, Diagnostic &d, std::string_view name, Spa
 struct OwnValue {
     std::string message, call;
 };
-OwnValue own_value(Interpreter &ev, const File &ast, const std::string &name);
+OwnValue own_value(Interpreter &ev, const File &ast, std::string_view name);
 void report_needless_range(Interpreter &ev, const File &ast, const lang::Param &param);
 bool is_vector_by_numbers(std::span<const Formal> formals, std::size_t i, std::size_t numbers);
 bool is_foreign_method(Interpreter &ev, const Value &object, const File &ast,

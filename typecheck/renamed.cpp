@@ -158,7 +158,7 @@ bool help_with_hidden(Interpreter &ev, Diagnostic &d, std::string_view name, Spa
     return true;
 }
 
-OwnValue own_value(Interpreter &ev, const File &ast, const std::string &name) {
+OwnValue own_value(Interpreter &ev, const File &ast, std::string_view name) {
     if (ev.quiet > 0) return {};
     for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
         const auto *let = std::get_if<lang::Let>(&s.kind);

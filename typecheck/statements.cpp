@@ -16,7 +16,7 @@ namespace fathom::typecheck {
 // -- statements that are the same everywhere -----------------------------------------------------
 
 static Value declared_value(Interpreter &ev, const File &ast, lang::ExprId value,
-                            const std::optional<lang::TypeExpr> &type, std::string_view name,
+                            const lang::TypeExpr *type, std::string_view name,
                             std::uint32_t frame) {
     Value v = eval(ev, ast, value, frame);
     if (!type || is_poison(v)) return v;

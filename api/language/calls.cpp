@@ -5,9 +5,9 @@
 namespace fathom::language {
 namespace {
 
-Form form_of(std::string signature, std::string doc) {
+Form form_of(std::string signature, std::string_view doc) {
     Signature read = read_signature(signature);
-    return {std::move(signature), std::move(doc), std::move(read)};
+    return {std::move(signature), std::string(doc), std::move(read)};
 }
 
 std::string one_line(std::string_view text) {

@@ -130,7 +130,7 @@ std::string declared_text(const File &home, const Declaration &declared, const s
         const lang::Function &function = ast.functions[declared.function];
         return code(
                    home.text.substr(function.head.begin, function.head.end - function.head.begin)) +
-               (function.doc.empty() ? "" : "\n" + function.doc);
+               (function.doc.empty() ? "" : "\n" + std::string(function.doc));
     }
     if (!type.empty()) return code(fmt::format("{}: {}", declared.name, type));
     if (declared.by == DeclaredBy::Parameter) return code(declared.name) + "\na parameter";

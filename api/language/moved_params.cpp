@@ -17,7 +17,7 @@ std::map<std::uint32_t, std::pair<std::string, double>> numbers_of_params(const 
         if (const auto *param = std::get_if<lang::Param>(&stmt.kind)) {
             const lang::Expr &value = ast.exprs[param->value];
             if (const auto *number = std::get_if<lang::Number>(&value.kind))
-                all[value.span.begin] = {param->name.text, number->value};
+                all[value.span.begin] = {std::string(param->name.text), number->value};
         }
     return all;
 }

@@ -35,7 +35,7 @@ struct Walk {
         scopes.back().names.try_emplace(name.text, Entry{index, visible});
         return index;
     }
-    void show(const std::string &name) {
+    void show(std::string_view name) {
         const auto found = scopes.back().names.find(name);
         if (found != scopes.back().names.end()) found->second.visible = true;
     }
@@ -55,8 +55,8 @@ struct Walk {
         }
         use.declaration = later;
     }
-    std::size_t use(const std::string &name, Span at, UsedAs as) {
-        Use made{name, at, as, {}, {}, {}, false};
+    std::size_t use(std::string_view name, Span at, UsedAs as) {
+        Use made{std::string(name), at, as, {}, {}, {}, false};
         resolve(made);
         out.uses.push_back(std::move(made));
         return out.uses.size() - 1;
@@ -69,7 +69,7 @@ struct Walk {
         }
         for (const lang::TypeExpr &item : type.items) this->type(item);
     }
-    void type(const std::optional<lang::TypeExpr> &given) {
+    void type(const lang::TypeExpr *given) {
         if (given) type(*given);
     }
 
@@ -82,7 +82,7 @@ struct Walk {
             const std::size_t index =
                 declare(parameter.name,
                         {"", {}, function.span, DeclaredBy::Parameter, false, {}, {}, ""}, true);
-            out.parameters.try_emplace({id.index, parameter.name.text}, index);
+            out.parameters.try_emplace({id.index, std::string(parameter.name.text)}, index);
         }
         type(function.result);
         block(function.body);
@@ -129,7 +129,7 @@ struct Walk {
                         false);
             else if (auto *import = std::get_if<lang::Import>(&stmt.kind)) {
                 Declaration declaration{"",    {}, stmt.span, DeclaredBy::Import,
-                                        false, {}, {},        import->path};
+                                        false, {}, {},        std::string(import->path)};
                 if (import->as)
                     declare(*import->as, declaration, false);
                 else {
@@ -201,8 +201,13 @@ struct Walk {
             out.uses.back().declaration) {
             const std::size_t object = *out.uses.back().declaration;
             if (out.declarations[object].by == DeclaredBy::Import) {
-                out.uses.push_back(
-                    {member.name.text, member.name.span, UsedAs::Member, {}, object, {}, false});
+                out.uses.push_back({std::string(member.name.text),
+                                    member.name.span,
+                                    UsedAs::Member,
+                                    {},
+                                    object,
+                                    {},
+                                    false});
                 return out.uses.size() - 1;
             }
         }
@@ -235,7 +240,7 @@ struct Walk {
             expr(call->callee);
         for (const lang::Argument &argument : call->arguments) {
             if (argument.name)
-                out.uses.push_back({argument.name->text,
+                out.uses.push_back({std::string(argument.name->text),
                                     argument.name->span,
                                     UsedAs::Argument,
                                     {},

@@ -224,7 +224,7 @@ std::optional<CodeAction> extract_param(const Syntax &syntax, const Names &names
     if (std::holds_alternative<lang::Param>(stmt.kind)) return std::nullopt;
     std::string range, text = slice(syntax, literal.span), wanted = "amount";
     if (const auto *number = std::get_if<lang::Number>(&literal.kind)) {
-        const std::string unit = number->unit;
+        const std::string unit(number->unit);
         const std::string digits = text.substr(0, text.size() - unit.size());
         const double value = parse_number(digits).value_or(0);
         if (number->is_int && value == 0) return std::nullopt; // what it counts is not known

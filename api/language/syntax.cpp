@@ -37,7 +37,7 @@ Inside inside(const lang::Expr &expr) {
         else if constexpr (std::is_same_v<Kind, lang::Unary>)
             in.exprs = {kind.operand};
         else if constexpr (std::is_same_v<Kind, lang::Binary>)
-            in.exprs = kind.operands;
+            for (const lang::Operand &operand : kind.operands) in.exprs.push_back(operand.value);
         else if constexpr (std::is_same_v<Kind, lang::Call>) {
             in.exprs = {kind.callee};
             for (const lang::Argument &argument : kind.arguments)

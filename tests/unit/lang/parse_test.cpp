@@ -185,5 +185,6 @@ TEST_CASE("places are the words themselves, parentheses apart") {
     const auto &sum = parsed.ast.exprs[std::get<fathom::lang::Member>(member.kind).object];
     CHECK(text(parsed.sources, sum.span) == "b + c");
     CHECK(sum.parenthesized);
-    CHECK(text(parsed.sources, std::get<fathom::lang::Binary>(sum.kind).op_spans.at(0)) == "+");
+    CHECK(text(parsed.sources, std::get<fathom::lang::Binary>(sum.kind).operands.at(1).op_span) ==
+          "+");
 }

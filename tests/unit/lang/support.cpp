@@ -124,11 +124,10 @@ class TreeCheck {
                        [&](const Range &r) { expr(r.first), expr(r.last); },
                        [&](const Unary &u) { expr(u.operand); },
                        [&](const Binary &b) {
-                           if (b.operands.size() != b.ops.size() + 1 ||
-                               b.ops.size() != b.op_spans.size() || b.ops.empty())
-                               fail("an operator without its operands");
-                           for (const Span op : b.op_spans) place(op);
-                           for (const ExprId operand : b.operands) expr(operand);
+                           if (b.operands.size() < 2) fail("an operator without its operands");
+                           for (std::size_t i = 1; i < b.operands.size(); ++i)
+                               place(b.operands[i].op_span);
+                           for (const Operand &operand : b.operands) expr(operand.value);
                        },
                        [&](const Call &c) {
                            expr(c.callee);
