@@ -1,5 +1,6 @@
 // The program: reads the command line, runs one command, tells by the exit status how it went.
 #include "cli/terminal.h"
+#include "system/system.h"
 
 #include <csignal>
 #include <new>
@@ -8,6 +9,7 @@ int main(int count, char **arguments) {
     using namespace fathom::cli;
     std::signal(SIGPIPE, SIG_IGN); // a reader that goes away is seen at the write
     std::signal(SIGXFSZ, SIG_IGN); // and so is a file that may not grow further
+    fathom::system::give_back_large_blocks();
     std::variant<Invocation, Answer> line = read_arguments(count, arguments);
     if (const auto *answer = std::get_if<Answer>(&line)) {
         Terminal terminal(ColorChoice::Auto);

@@ -5,6 +5,9 @@
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <unistd.h>
+#if defined(__GLIBC__) && !defined(FATHOM_PORTABLE)
+#include <malloc.h>
+#endif
 
 #if defined(__linux__) && !defined(FATHOM_PORTABLE)
 #include <csignal>
@@ -89,3 +92,13 @@ void end_with(int parent) {
 } // namespace fathom::system
 
 #endif
+
+namespace fathom::system {
+
+void give_back_large_blocks() {
+#if defined(__GLIBC__) && !defined(FATHOM_PORTABLE)
+    ::mallopt(M_MMAP_THRESHOLD, 8 << 20);
+#endif
+}
+
+} // namespace fathom::system

@@ -28,4 +28,8 @@ bool is_of_this_user(int socket);
 // so already. `parent` is what `getpid` said there. Elsewhere it may go on for a while.
 void end_with(int parent);
 
+// From here on what is freed of 8 MiB or more goes back to the system at once, for other programs and
+// as whole room for what is made next. Where the C library cannot be told so, nothing.
+void give_back_large_blocks();
+
 } // namespace fathom::system
