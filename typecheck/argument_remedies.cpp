@@ -182,10 +182,6 @@ std::string our_argument(std::string_view theirs, std::span<const Formal> formal
     return near.empty() ? shortest_begun_by(theirs, names) : near; // `r` for `radius`
 }
 
-} // namespace
-
-namespace {
-
 // The unknown arguments of one call, and what is proposed for them so far.
 class Remedy {
   public:
@@ -238,10 +234,12 @@ class Remedy {
         }
         left_.clear();
     }
+    bool is_given(std::string_view ours) const {
+        const auto is_it = [&](const Argument &b) { return b.name && b.name->text == ours; };
+        return std::ranges::any_of(args_, is_it);
+    }
     bool is_free(std::string_view ours) const {
-        return std::ranges::find(proposed_, ours) == proposed_.end() &&
-               std::ranges::none_of(
-                   args_, [&](const Argument &b) { return b.name && b.name->text == ours; });
+        return std::ranges::find(proposed_, ours) == proposed_.end() && !is_given(ours);
     }
 
     // `s.repeat(3, along: X, spacing: 1)`: a row of so many, so far apart.
@@ -344,9 +342,19 @@ class Remedy {
             if (fix_.message.find("--size") == std::string::npos)
                 say("the size of a picture is said where it is made: `fathom render --size`");
             leave(i);
+        } else if (camera && is_given("at") &&
+                   (name == "from" || our_argument(name, formals_) == "at")) {
+            say("a camera is `at` a place, and looks at `look_at`");
+            for (const Argument &a : args_)
+                if (&a == &args_[i] || (a.name && a.name->text == "at"))
+                    fix_.edits.push_back({a.name->span, &a == &args_[i] ? "at" : "look_at"});
         } else if (function_ == "light" && name == "type") {
             say("a light from afar is `sun(direction: …)`, any other has no type");
             leave(i);
+        } else if (function_ == "light" && (name == "dir" || name == "direction")) {
+            say("a light from afar is `sun(direction: …)`");
+            fix_.edits.push_back({callee_, "sun"});
+            fix_.edits.push_back({args_[i].name->span, "direction"});
         } else if (function_ == "sun" && (name == "angle" || name == "elevation" ||
                                           name == "azimuth" || name == "rotation")) {
             say("where the sun stands is a direction: `sun(direction: [0.4, 1, 0.3])`");

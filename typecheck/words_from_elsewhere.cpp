@@ -195,6 +195,8 @@ constexpr Row ways[] = {
      "shadow shadows softshadow softshadows"},
     {"what is closed in is darkened by `lighting(ambient_occlusion: 1)`",
      "ao occlusion ambientocclusion"},
+    {"light from all sides is a setting: `lighting(ambient: 0.2)`",
+     "ambient ambientlight hemispherelight"},
     {"there is no fog: what has no end fades into the background, towards `render(far: …)`",
      "fog mist haze"},
     {"a list is summed by `fold(list, 0, (a, b) => a + b)`", "sum total accumulate"},
