@@ -200,8 +200,9 @@ bool only_grows(std::optional<Op> cause) {
 
 namespace {
 
-// Whether a list is read at a place that follows from the point.
-bool reads_list_by_point(const ir::Graph &graph, const std::vector<NodeId> &roots) {
+// Whether one of the nodes that these are made of is of a kind.
+template <class Is>
+bool holds(const ir::Graph &graph, const std::vector<NodeId> &roots, const Is &is) {
     std::vector<NodeId> todo = roots;
     std::unordered_set<NodeId> seen;
     while (!todo.empty()) {
@@ -209,15 +210,27 @@ bool reads_list_by_point(const ir::Graph &graph, const std::vector<NodeId> &root
         todo.pop_back();
         if (!id || !seen.insert(id).second) continue;
         const ir::Node node = graph[id];
-        if (node.op == Op::TableRead) {
-            const ir::Graph::Reads reads = graph.reads(graph.arg(id, 0));
-            if (reads.point || reads.free_vars) return true;
-        }
+        if (is(id, node.op)) return true;
         if (node.op == Op::Call)
             todo.push_back(graph.function(ir::FunctionId{node.payload}).result);
         todo.insert(todo.end(), graph.args(id).begin(), graph.args(id).end());
     }
     return false;
+}
+
+// … a list read at a place that follows from the point.
+bool reads_list_by_point(const ir::Graph &graph, const std::vector<NodeId> &roots) {
+    return holds(graph, roots, [&](NodeId id, Op op) {
+        if (op != Op::TableRead) return false;
+        const ir::Graph::Reads reads = graph.reads(graph.arg(id, 0));
+        return reads.point || reads.free_vars;
+    });
+}
+
+// … a function that leaves single precision where its argument is above 88.
+bool raises_e(const ir::Graph &graph, const std::vector<NodeId> &roots) {
+    constexpr ir::OpSet powers{Op::Exp, Op::Exp2, Op::Sinh, Op::Cosh};
+    return holds(graph, roots, [&](NodeId, Op op) { return powers[op]; });
 }
 
 constexpr ir::OpSet told_of{Op::Floor, Op::Round, Op::Ceil, Op::Fract, Op::Mod, Op::Hash};
@@ -268,11 +281,19 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
         return;
     }
     if (grows) {
-        if (Diagnostic *d =
-                report_at(id, blamed, Code::LipschitzUnbounded,
-                          what + " is too steep to be bounded near " + point_text(b.where, dims)))
-            d->note("its numbers grow beyond all limits there")
-                .help("choose a smaller region or smaller numbers, " + assume);
+        const bool leaves = b.trouble == Trouble::Overflow;
+        const std::string near = " near " + point_text(b.where, dims);
+        if (Diagnostic *d = report_at(id, blamed, Code::LipschitzUnbounded,
+                                      what + (leaves ? " leaves what single precision holds" + near
+                                                     : " is too steep to be bounded" + near)))
+            d->note(leaves ? "a number is above 3.4e38 there, which counts as infinite, and what "
+                             "is computed of it may be no number"
+                           : "its numbers grow beyond all limits there")
+                .help((leaves && raises_e(graph, scene.shapes[id].args)
+                           ? "take `exp` of at most 80, as in `exp(min(u, 80))`, or let it fall: "
+                             "`exp(u) / (1 + exp(u))` is `1 / (1 + exp(-u))`; "
+                           : "") +
+                      std::string("choose a smaller region or smaller numbers, ") + assume);
         return;
     }
     switch (b.trouble) {
