@@ -5,6 +5,7 @@
 #include "proof/composed.h"
 #include "proof/jumps.h"
 #include "proof/question.h"
+#include "proof/reduced.h"
 #include "proof/zones.h"
 
 #include <algorithm>
@@ -42,6 +43,11 @@ struct Worse { // finite bounds: the greatest first; infinite ones: the deepest,
 
 std::array<double, 3> middle(const Cell &cell) {
     return {cell.p[0].middle(), cell.p[1].middle(), cell.p[2].middle()};
+}
+// How far off its middle is, at least 1.
+double distance(const Cell &cell) {
+    const std::array<double, 3> p = middle(cell);
+    return std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2]), 1.0});
 }
 // Kinks lie in the middle of domains, and there the hull of both sides may be steeper than either.
 std::array<double, 3> beside_middle(const Cell &cell) {
@@ -118,58 +124,6 @@ bool holds_waves(const Tape &tape) {
         tape, [](const Instruction &in) { return in.op == Op::Sin || in.op == Op::Cos; });
 }
 
-// Along each axis that the domain is longer than a period, one period; says along which.
-std::array<bool, 3> to_one_period(const Periods &periods, Cell &whole) {
-    std::array<bool, 3> shifted{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double period = periods.period[i];
-        if (periods.reads[i] && period > 0 && whole.p[i].width() > period) {
-            whole.p[i] = Interval(-period / 2, period / 2 * (1 + 1e-9));
-            shifted[i] = true;
-        }
-        if (!periods.reads[i] && !whole.p[i].finite()) whole.p[i] = 0.0;
-    }
-    return shifted;
-}
-
-// From the one period that is searched to the domain.
-void to_domain(const Periods &periods, const std::array<bool, 3> &shifted, const Cell &domain,
-               FieldBound &found) {
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double at = found.where[i], period = periods.period[i];
-        if (!shifted[i] || domain.p[i].contains(at)) continue;
-        const double turns = at < domain.p[i].lo ? std::ceil((domain.p[i].lo - at) / period)
-                                                 : std::floor((domain.p[i].hi - at) / period);
-        for (auto *point : {&found.where, &found.side_a, &found.side_b})
-            (*point)[i] += turns * period;
-    }
-}
-
-// A domain that is its own mirror image is cut down to the part where coordinates are not below 0,
-// as far as the field is as steep on both sides; true where its values there are the others
-// negated.
-bool keep_half(const Tape &tape, Cell &whole, const Zone *zone) {
-    auto centred = [&](std::size_t i) {
-        if (zone && (!zone->less.empty() || zone->kind == ir::RegionKind::Everywhere ||
-                     (zone->kind != ir::RegionKind::Tube && !(zone->center[i] == Interval(0.0)))))
-            return false;
-        // Of a period the upper end lies a little further out.
-        return whole.p[i].lo < 0 && -whole.p[i].lo <= whole.p[i].hi;
-    };
-    bool halved = false, negated = false;
-    auto try_axes = [&](const std::array<bool, 3> &axes, std::size_t cut) {
-        const Reflected how = reflected(tape, axes);
-        if (how == Reflected::Unknown) return;
-        whole.p[cut].lo = 0;
-        halved = true;
-        negated = negated || how == Reflected::Negated;
-    };
-    for (std::size_t i = 0; i < 3; ++i)
-        if (centred(i)) try_axes({i == 0, i == 1, i == 2}, i);
-    if (!halved && centred(0) && centred(1) && centred(2)) try_axes({true, true, true}, 0);
-    return negated;
-}
-
 // A hull of both sides of a step holds what neither of them comes near. Of the points beside the
 // cell, too: it may lie on one side alone.
 void look_at_sides(Machine &machine, const Cell &cell, const Cell &whole, FieldBound &found) {
@@ -182,12 +136,29 @@ void look_at_sides(Machine &machine, const Cell &cell, const Cell &whole, FieldB
     found.each_side = machine.norm_by_ways(about, infinity) < infinity;
 }
 
+// No bound, since this cell has none that cannot be cut, or that no work is left for.
+void refuse(const ir::Graph &graph, Machine &machine, const Cell &cell, bool came_near,
+            FieldBound &found) {
+    machine.run(cell);
+    found.lipschitz = infinity;
+    found.value = Interval::everything();
+    found.trouble = machine.trouble();
+    if (machine.cause()) found.cause = graph[machine.cause()].op;
+    found.where = middle(cell);
+    found.came_near = came_near;
+}
+
+// The part of a cell where rays go.
+Cell within_reach(Cell cell) {
+    for (Interval &x : cell.p) x = meet(x, Interval(-in_reach, in_reach));
+    return cell;
+}
+
 // May products leave single precision where rays go, of a field without powers and exponentials? In
 // regions they are taken as they are.
 bool products_overflow(const Tape &tape, const Ranges &ranges, const Domain &domain) {
     if (tape.grows || tape.too_large) return false;
-    Cell near = domain.box;
-    for (Interval &x : near.p) x = meet(x, Interval(-in_reach, in_reach));
+    const Cell near = within_reach(domain.box);
     if (near.p == domain.box.p) return false;
     Machine machine(tape, ranges);
     machine.run(near);
@@ -245,13 +216,15 @@ FieldBound search_cells(Flattening &context, const Ranges &ranges, const Tape &t
                     static_cast<std::uint32_t>(cells.size())});
         cells.emplace_back(cell, machine.value(0));
     };
+    // What a run tells that begins with no work left is nothing.
+    const auto runs_left = [&] {
+        const std::size_t taken = out.evaluations > 0 ? machine.work() / out.evaluations : 0;
+        return ranges.work->left / std::max(tape.length() + 1, taken);
+    };
     const bool asks_ways = holds_choices(tape);
     push(whole, 0, first_ways);
-    if (tape.grows) { // where rays go, what leaves single precision has no bound, whatever a rule says
-        Cell near = whole;
-        for (Interval &x : near.p) x = meet(x, Interval(-in_reach, in_reach));
-        if (near.p != whole.p) push(near, 0, first_ways);
-    }
+    if (tape.grows) // where rays go, what leaves single precision has no bound, whatever a rule says
+        if (const Cell near = within_reach(whole); near.p != whole.p) push(near, 0, first_ways);
     double settled = 0; // of cells that cannot be cut any more
     Interval settled_value{infinity, -infinity};
     std::size_t limit = std::max(budget.instructions, 200 * tape.length());
@@ -260,6 +233,7 @@ FieldBound search_cells(Flattening &context, const Ranges &ranges, const Tape &t
         Candidate top = queue.top();
         if (top.bound <= std::max({out.sampled * budget.tolerance, settled, budget.enough})) break;
         if (out.sampled > budget.hopeless) break;
+        if (top.bound != infinity && runs_left() < 3) break; // a sample, and both halves
         if (top.bound != infinity && machine.work() > limit &&
             !goes_on(budget, top.bound, out.sampled, limit, at_limit))
             break;
@@ -268,25 +242,17 @@ FieldBound search_cells(Flattening &context, const Ranges &ranges, const Tape &t
         int axis = 0;
         double width = widest(cell, cuts, &axis);
         auto k = static_cast<std::size_t>(axis);
-        std::array<double, 3> centre = middle(cell);
-        double size =
-            std::max({std::fabs(centre[0]), std::fabs(centre[1]), std::fabs(centre[2]), 1.0});
+        const double size = distance(cell);
         bool endless = !std::isfinite(width);
         if (top.bound == infinity &&
             (width <= 1e-7 * size || (endless && top.depth > 60) || machine.work() > 4 * limit)) {
-            machine.run(cell);
-            out.lipschitz = infinity;
-            out.trouble = machine.trouble();
+            refuse(context.graph, machine, cell, width <= 1e-7 * size, out);
             out.at_infinity = endless;
-            if (machine.cause()) out.cause = context.graph[machine.cause()].op;
-            out.where = centre;
-            out.came_near = width <= 1e-7 * size;
             if (!endless && out.trouble == Trouble::Jump)
                 find_sides(tape, ranges, out, std::max(1e-5 * size, width), periods.reads, whole,
                            zone);
             if (asks_ways) look_at_sides(machine, cell, whole, out);
             to_domain(periods, shifted, domain.box, out);
-            out.value = Interval::everything();
             return out;
         }
         if (width <= 1e-9 * size || (endless && top.depth > 60)) { // no further out is it flatter
@@ -302,6 +268,10 @@ FieldBound search_cells(Flattening &context, const Ranges &ranges, const Tape &t
             if (less < top.bound * ways_gain) {
                 queue.push({less, top.depth, std::int16_t(ways_at), top.at});
                 continue;
+            }
+            if (runs_left() < 2) {
+                queue.push(top);
+                break;
             }
         }
         Cell left = cell, right = cell;

@@ -7,9 +7,30 @@ using ir::Op;
 
 namespace {
 
-constexpr ir::OpSet affine{Op::Add,  Op::Sub,     Op::Neg,   Op::Mul,   Op::Div,
-                           Op::Make, Op::Swizzle, Op::Splat, Op::MatMul},
+constexpr ir::OpSet affine{Op::Add,     Op::Sub,   Op::Neg,    Op::Mul, Op::Div,  Op::Make,
+                           Op::Swizzle, Op::Splat, Op::MatMul, Op::Dot, Op::Cross},
     folds{Op::Abs, Op::Mod, Op::Fract, Op::Floor, Op::Round, Op::Clamp};
+
+// Is a vector's component 0, whatever the params?
+bool is_zero(const ir::Graph &graph, NodeId vector, int component) {
+    if (graph.is_constant(vector))
+        return graph.constant_of(vector).value[std::size_t(component)] == 0;
+    const bool of_numbers = graph[vector].op == Op::Make &&
+                            graph[vector].count == unsigned(ir::components(graph[vector].type));
+    return of_numbers && graph.as_number(graph.arg(vector, component)) == 0.0;
+}
+
+// The coordinates that a dot product of the point does not depend on: `dot(p, vec3(a, b, 0))`.
+unsigned left_out(const ir::Graph &graph, NodeId dot) {
+    unsigned out = 0;
+    for (int i = 0; i < 2; ++i) {
+        const NodeId point = graph.arg(dot, i), by = graph.arg(dot, 1 - i);
+        if (graph[point].op != Op::Point || graph.reads(by).point) continue;
+        for (int k = 0; k < ir::components(graph[point].type); ++k)
+            if (is_zero(graph, by, k)) out |= 1u << k;
+    }
+    return out;
+}
 
 } // namespace
 
@@ -40,8 +61,10 @@ const Below &ReadThrough::below(NodeId id) {
             out.is_fold = out.is_fold && one.is_fold;
             moving += graph_.reads(arg).point;
         }
-        const bool multiplies = node.op == Op::Mul || node.op == Op::Div || node.op == Op::MatMul;
-        if ((multiplies && moving > 1) ||
+        constexpr ir::OpSet products{Op::Mul, Op::Div, Op::MatMul, Op::Dot, Op::Cross};
+        if (node.op == Op::Dot && moving > 1) out.is_fold = false; // a square, or a length's
+        if (node.op == Op::Dot) out.coordinates &= ~left_out(graph_, id);
+        if ((products[node.op] && moving > 1) ||
             (node.op == Op::Div && graph_.reads(graph_.arg(id, 1)).point))
             out.is_affine = false;
     }
