@@ -122,6 +122,30 @@ struct LeafLook {
     Budget &budget;
     TapePtr tape; // holds in the leaf
     Reach reach{};
+    bool hopeless = false; // it holds surface that is too far from the mesh: at the doubt
+
+    // Whether surface between two places of different signs in a box is farther than is allowed.
+    void look_between(const std::array<Point, 2> &ends) {
+        constexpr int steps = 32;
+        Points points;
+        for (int k = 0; k <= steps; ++k) {
+            Point p{};
+            for (std::size_t i = 0; i < 3; ++i)
+                p[i] = ends[0][i] + (ends[1][i] - ends[0][i]) * static_cast<float>(k) / steps;
+            points.add(p);
+        }
+        std::vector<float> values;
+        values_at(evaluator, *tape, points, values);
+        for (std::size_t k = 1; k < values.size(); ++k) {
+            if ((values[k] <= 0) == (values[0] <= 0)) continue;
+            const Real3 at = real(points[k]);
+            hopeless = !inquiry.tree->nearest(
+                at, (inquiry.allowed + distance(at, real(points[k - 1]))) * outward,
+                2 * inquiry.allowed);
+            if (hopeless) reach.doubt = points[k];
+            return;
+        }
+    }
 
     bool is_seam(const Box &box, const Sighting &seen, bool may_wait) {
         if (budget.divisions < seam_work) return false;
@@ -153,7 +177,12 @@ struct LeafLook {
             std::size_t next = 0;
             for (const Box &box : some) {
                 const bool asked = box.far || !far_alone;
-                if (asked && is_seam(box, seen[next++], first && !box.far)) continue;
+                if (asked) {
+                    const Sighting &sighting = seen[next++];
+                    if (is_seam(box, sighting, first && !box.far)) continue;
+                    if (box.far && sighting.ends) look_between(*sighting.ends);
+                    if (hopeless) return;
+                }
                 kept.push_back(box);
                 if (to_first) {
                     left = std::move(kept);
@@ -214,6 +243,10 @@ Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
         if (depth % seam_depth == 0)
             look.leave_out_seams(open, last, depth == 0 && !last, depth == 0 && node.crossed());
         if (open.empty()) break;
+        if (look.hopeless) {
+            reach.decided = false;
+            break;
+        }
         if (last || open.size() > budget.divisions) {
             reach.decided = false;
             for (std::size_t i = 0; i < 3; ++i)

@@ -100,22 +100,22 @@ class Grid {
 // Where cells were divided: the blocks of space about them.
 class Region {
   public:
-    explicit Region(const Lattice &lattice)
-        : lattice_(lattice), side_(lattice.side(lattice.level)) {}
+    // `few`: drawing cells, half of what is beside a divided one.
+    explicit Region(const Lattice &lattice, double few = 2)
+        : lattice_(lattice), side_(lattice.side(lattice.level)), few_(few), more_(2 * few) {}
     void add(const Cell &cell) {
         const Real3 at = real(point_of(lattice_, corner(cell.at, 1, 0)));
-        if (!changed_.insert(key_of(block_of(at, few))).second) return;
-        add_about(block_of(at, few), beside_);
-        add_about(block_of(at, more), around_);
+        if (!changed_.insert(key_of(block_of(at, few_))).second) return;
+        add_about(block_of(at, few_), beside_);
+        add_about(block_of(at, more_), around_);
     }
-    // Whether a point is no more than four drawing cells from a divided one, or eight: it may be of
-    // those that are a little farther.
-    bool beside(const Real3 &p) const { return beside_.contains(key_of(block_of(p, few))); }
-    bool around(const Real3 &p) const { return around_.contains(key_of(block_of(p, more))); }
+    // Whether a point is no more than twice so many drawing cells from a divided one, or four times: it
+    // may be of those that are a little farther.
+    bool beside(const Real3 &p) const { return beside_.contains(key_of(block_of(p, few_))); }
+    bool around(const Real3 &p) const { return around_.contains(key_of(block_of(p, more_))); }
 
   private:
     using Block = std::array<std::int64_t, 3>;
-    static constexpr double few = 2, more = 4; // drawing cells: the sides of blocks
     Block block_of(const Real3 &p, double cells) const {
         const Real3 origin = real(point_of(lattice_, {0, 0, 0}));
         Block at{};
@@ -130,7 +130,7 @@ class Region {
                     blocks.insert(key_of(Block{at[0] + x, at[1] + y, at[2] + z}));
     }
     const Lattice lattice_;
-    double side_;
+    double side_, few_, more_; // the last two: the sides of blocks, in drawing cells
     std::unordered_set<std::uint64_t> changed_, beside_, around_;
 };
 

@@ -71,7 +71,8 @@ Failure untangle(Made &made, const Field &field, const Settings &settings, bool 
     const std::size_t bound = before + std::max(times_untangled * before, nodes_untangled);
     std::optional<Region> changed; // where cells were divided; no others can have become tangled
     const auto note = [&](const std::vector<Cell> &cells) {
-        changed.emplace(made.octree.lattice);
+        constexpr double few = 1; // it may tangle those that it touches
+        changed.emplace(made.octree.lattice, few);
         for (const Cell &cell : cells) changed->add(cell);
     };
     if (!divided.empty()) note(divided);

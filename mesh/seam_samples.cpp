@@ -80,7 +80,8 @@ bool rise_one_way(const std::array<std::vector<float>, 4> &slopes, std::size_t f
 struct Suspect {
     std::size_t number = 0; // of the box
     bool solid = false;
-    bool crossed = false;                       // it has surface
+    bool crossed = false;                       // it has surface,
+    Point at{};                                 // since there is another sign
     float first = 0, nearest = 0;               // to 0 of all values: of the first step, and of all
     std::array<std::vector<float>, 3> planes{}; // as Sighting's, by the last step
 };
@@ -113,7 +114,10 @@ bool step_in(const std::array<std::vector<float>, 4> &slopes, std::size_t from, 
     for (std::size_t k = from; k < from + places; ++k) {
         const float value = slopes[0][k];
         suspect.crossed = (value <= 0) != suspect.solid && std::fabs(value) > most_thin * thin;
-        if (suspect.crossed) return false;
+        if (suspect.crossed) {
+            suspect.at = points[k];
+            return false;
+        }
         least = std::min(least, std::fabs(value));
     }
     suspect.nearest = std::min(suspect.nearest, least);
@@ -158,12 +162,16 @@ std::vector<Sighting> look_for_seams(Evaluator &evaluator, const cpu::ShortTape 
     std::vector<std::size_t> kept; // where the places of those begin
     for (std::size_t n = 0; n < near.size(); ++n) {
         const std::span<const float> here = std::span(values).subspan(n * places, places);
-        Suspect suspect{near[n], here[0] <= 0, false, std::numeric_limits<float>::infinity(), 0,
-                        {}};
+        Suspect suspect{.number = near[n], .solid = here[0] <= 0};
+        suspect.first = std::numeric_limits<float>::infinity();
         for (const float value : here) suspect.first = std::min(suspect.first, std::fabs(value));
         suspect.nearest = suspect.first;
-        if (!std::ranges::all_of(here, [&](float v) { return (v <= 0) == suspect.solid; }))
+        if (!std::ranges::all_of(here, [&](float v) { return (v <= 0) == suspect.solid; })) {
+            const auto [low, high] = std::ranges::minmax_element(here);
+            seen[near[n]].ends = {place_in(boxes[near[n]], shares[low - here.begin()]),
+                                  place_in(boxes[near[n]], shares[high - here.begin()])};
             continue;
+        }
         suspects.push_back(suspect);
         kept.push_back(n * places);
     }
@@ -181,6 +189,9 @@ std::vector<Sighting> look_for_seams(Evaluator &evaluator, const cpu::ShortTape 
                 left.push_back(suspects[k]);
             } else if (!suspects[k].crossed) {
                 seen[suspects[k].number].seen = suspects[k].solid ? Seen::AllSolid : Seen::AllEmpty;
+            } else {
+                const Extent &box = boxes[suspects[k].number];
+                seen[suspects[k].number].ends = {place_in(box, shares[0]), suspects[k].at};
             }
         }
         keep_places(kept, points);

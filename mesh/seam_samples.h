@@ -4,6 +4,7 @@
 
 #include "mesh/field.h"
 
+#include <optional>
 #include <span>
 
 namespace fathom::mesh {
@@ -21,6 +22,8 @@ struct Sighting {
     Seen seen = Seen::NoSeam;
     // Along each axis: where planes at right angles to it seem to lie.
     std::array<std::vector<float>, 3> planes{};
+    // Two places of different signs, where it has surface.
+    std::optional<std::array<Point, 2>> ends{};
     // The field rises in one direction at more than half of the samples: it may depend on one number.
     bool one_way = false;
 };

@@ -192,6 +192,16 @@ TEST_CASE("mending ends where no round gains, and alike however many threads the
     }
 }
 
+TEST_CASE("surface that is seen to be too far from the mesh is not looked into any closer") {
+    // Fins that cells of a third of their distance lose: as many boxes as are open, and no more.
+    const auto [made, certificate] =
+        certified("box([10, 0.5, 10]) | box([0.1, 3, 10]).repeat([0.5, 0, 0], count: [19, 1, 1])"
+                  ".translate(y: 1.7)",
+                  cells(32));
+    CHECK(certificate.undecided.size() > 500);
+    CHECK(certificate.divisions < 12 * certificate.undecided.size());
+}
+
 TEST_CASE("a root on a flat face is known to a small part of its edge") {
     const driver::Compilation c = driver::compile_text("mesh.sdf", "box([2, 1, 1.5])", "", {});
     REQUIRE(c.good());
