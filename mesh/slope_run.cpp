@@ -8,6 +8,24 @@ namespace {
 
 using cpu::Kernel;
 
+// Where a number is 0 one of its alternatives is.
+Zeros zeros_of_alternatives(const Alternatives &alternatives, const Varying &number,
+                            const Point &lo, const Point &hi) {
+    Zeros zeros{true, {}};
+    for (const Alternative &alternative : alternatives.all) {
+        Varying one = number;
+        one.slope = alternative.slope;
+        const Linear sheet = linear_of(one, alternative.middle, lo, hi);
+        double most = sheet.off; // that it may be, less its middle
+        for (std::size_t i = 0; i < 3; ++i)
+            most += std::fabs(sheet.slope[i]) * (double(hi[i]) - lo[i]);
+        if (std::fabs(sheet.value) > most) continue;
+        if (!is_steady(sheet)) return {};
+        zeros.sheets.push_back(sheet);
+    }
+    return zeros;
+}
+
 // Runs a tape's steps one by one.
 struct SlopeRunner {
     Evaluator &evaluator;
@@ -17,7 +35,10 @@ struct SlopeRunner {
     const cpu::Selection tape;
     std::vector<Varying> in{};
     std::vector<Zeros> their{};
-    std::vector<Operand> of{};        // a kernel's inputs
+    std::vector<Operand> of{}; // a kernel's inputs
+    std::vector<Chosen>
+        chosen{}; // … by alternatives, where one of them has several or the kernel chooses
+    std::array<double, 3> reach{};    // from the middle of the box
     std::uint32_t ids = 0;            // that are given
     double left = evaluator.followed; // steps of loops
 
@@ -30,6 +51,10 @@ struct SlopeRunner {
     }
 
     void enter() {
+        const Point middle = middle_point(question.lo, question.hi);
+        for (std::size_t i = 0; i < 3; ++i)
+            reach[i] =
+                std::max(double(question.hi[i]) - middle[i], double(middle[i]) - question.lo[i]);
         if (question.zeros) slopes.memory.by_id.assign(1, {});
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::size_t slot = slopes.slot(program().params[axis].address);
@@ -148,6 +173,43 @@ struct SlopeRunner {
             their.push_back(slopes.zeros_at(operands[n]));
             of.push_back({operands[n], &in[n - part.writes], &their.back()});
         }
+        take_alternatives(cpu::kernel_of_variant(step.target), operands + part.writes);
+    }
+
+    // What alternatives its inputs have, where what it gives may have several.
+    void take_alternatives(Kernel kernel, const std::uint32_t *operands) {
+        chosen.clear();
+        bool several = chooses(kernel) || kernel == Kernel::Distance3;
+        for (const Varying &one : in) several = several || one.several;
+        if (!several) return;
+        for (std::size_t n = 0; n < in.size(); ++n)
+            chosen.push_back({&in[n], slopes.alternatives_at(operands[n], in[n])});
+    }
+
+    // The slopes of a number lie within those of its alternatives.
+    void put_alternatives(Kernel kernel, SlopeMemory::Slot &slot, Varying &made) {
+        slot.alternatives = {};
+        if (chosen.empty()) return;
+        const auto see_zeros = [&](const Alternatives &of) {
+            if (!of.known) return;
+            const Zeros zeros = zeros_of_alternatives(of, made, question.lo, question.hi);
+            if (zeros.known &&
+                (!slot.zeros.known || zeros.sheets.size() < slot.zeros.sheets.size()))
+                slot.zeros = zeros;
+        };
+        if (kernel == Kernel::Distance3)
+            for (const Alternatives &part : differences_of(chosen)) see_zeros(part);
+        slot.alternatives = alternatives_of(kernel, chosen, reach);
+        made.several = slot.alternatives.known;
+        if (!slot.alternatives.known || !made.known) return;
+        for (std::size_t i = 0; i < directions; ++i) {
+            Interval all = slot.alternatives.all[0].slope[i];
+            for (const Alternative &alternative : slot.alternatives.all)
+                all = hull(all, alternative.slope[i]);
+            made.slope[i] = {std::max(made.slope[i].lo, all.lo),
+                             std::min(made.slope[i].hi, all.hi)};
+        }
+        see_zeros(slot.alternatives);
     }
 
     void put(const cpu::Step &step, std::uint32_t to, bool waves, Varying &made,
@@ -161,6 +223,7 @@ struct SlopeRunner {
                                    question.hi);
             slot.zeros =
                 zeros_of(cpu::kernel_of_variant(step.target), of, itself, slopes.memory.by_id);
+            put_alternatives(cpu::kernel_of_variant(step.target), slot, made);
         }
         if (!made.known) return;
         if (made.id == 0) made.id = new_id(question.zeros ? slopes.zeros_at(to) : Zeros{});
@@ -187,6 +250,7 @@ void Slopes::forget(std::size_t slot) const {
     of.number = {};
     of.zeros.known = false;
     of.zeros.sheets.clear();
+    of.alternatives = {};
 }
 
 void Slopes::read(std::uint32_t address, Varying &found) const {
@@ -204,6 +268,15 @@ Zeros Slopes::zeros_at(std::uint32_t address) const {
     if (!with_zeros || shared(address)) return {};
     const SlopeMemory::Slot &of = memory.slots[slot(address)];
     return of.run == memory.run ? of.zeros : Zeros{};
+}
+
+Alternatives Slopes::alternatives_at(std::uint32_t address, const Varying &number) const {
+    if (!shared(address))
+        if (const SlopeMemory::Slot &of = memory.slots[slot(address)];
+            of.run == memory.run && of.alternatives.known)
+            return of.alternatives;
+    return shared(address) ? single(number, {ranges.lo[address], ranges.hi[address]})
+                           : single(number, {ranges.lo[address + 1], ranges.hi[address + 1]});
 }
 
 Linear linear_of(const Varying &number, Interval middle, const Point &lo, const Point &hi) {

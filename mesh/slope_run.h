@@ -2,6 +2,7 @@
 // the place. Loops are run iteration by iteration.
 #pragma once
 
+#include "mesh/alternatives.h"
 #include "mesh/field.h"
 #include "mesh/zeros.h"
 
@@ -17,6 +18,7 @@ struct SlopeMemory {
         std::uint64_t run = 0; // that wrote it
         Varying number;
         Zeros zeros;
+        Alternatives alternatives; // known where it is no single one
     };
     std::vector<Slot> slots;
     std::uint64_t run = 0;
@@ -44,12 +46,13 @@ struct Slopes {
         return found;
     }
     Zeros zeros_at(std::uint32_t address) const;
+    Alternatives alternatives_at(std::uint32_t address, const Varying &number) const;
 };
 
 struct SlopeQuestion {
     Point lo, hi;                  // the box
     std::array<double, 3> along{}; // the direction beside the axes
-    bool zeros = false;            // where numbers are 0 is wanted
+    bool zeros = false;            // where numbers are 0 is wanted, and their alternatives
 };
 using SeeNumber = std::function<void(Register, const Varying &)>; // not of those in loops
 

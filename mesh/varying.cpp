@@ -354,7 +354,11 @@ Varying through(Kernel kernel, const std::vector<Varying> &in) {
         return length_of(parts, 3);
     }
     if (kernel == Kernel::LessF || kernel == Kernel::LessEqualF) return comparison_of(in[0], in[1]);
-    if (kernel == Kernel::Not) return in[0];
+    if (kernel == Kernel::Not) {
+        Varying made = in[0];
+        made.id = 0; // another number
+        return made;
+    }
     if (kernel == Kernel::SelectF) return selected(in[0], in[1], in[2]);
     if (kernel == Kernel::And || kernel == Kernel::Or) {
         Varying made;

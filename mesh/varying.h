@@ -42,6 +42,7 @@ struct Varying {
     // as this from there.
     bool jumps = false;
     double beyond = 0;
+    bool several = false; // it has alternatives (alternatives.h)
     std::uint32_t id = 0; // the same of copies of one number; 0: it has none yet
     // It is the greatest of these (of itself where they are not known), and of others that are not
     // above 0 anywhere in the box.

@@ -27,6 +27,7 @@ struct Known {
 // A surface that all but follows the direction that it is a graph along: its sheets tell more, or
 // nothing does.
 constexpr double poor = 4, useless = 100;
+constexpr double across_edge = 1.05; // more than that where it has an edge
 
 void flatten(Linear &linear) { linear.slope[2] = linear.spread[2] = 0; }
 
@@ -51,7 +52,10 @@ Known known_in(Splitter &splitter, const cpu::ShortTape &tape, const Block &bloc
     }
     known.linear = border.like ? border.like : border.linear;
     if (walk.flat && known.linear) flatten(*known.linear);
-    if (border.like) known.slant = slant_of(*known.linear);
+    if (border.like || (known.linear && fully)) known.slant = slant_of(*known.linear);
+    // Not of several sheets at an angle, each of which tells more.
+    const double most = known.zeros.known ? across_edge : useless;
+    if (known.slant && !border.like && known.slant->most > most) known.slant.reset();
     return known;
 }
 
@@ -100,7 +104,7 @@ int price_of(const cpu::ShortTape &tape) {
 void walk_piece(Splitter &splitter, const cpu::ShortTape &tape, const Block &piece, int levels,
                 int more, int &spare, const Walk &walk, CellSums &sums) {
     constexpr int of_seam = 8; // a search takes so many times what a box does, about
-    constexpr double well = 1.02, across_edge = 1.05;
+    constexpr double well = 1.02;
     const Known known = known_in(splitter, tape, piece, walk, true);
     const auto &[linear, slant, zeros] = known;
     const bool analysed = linear || zeros.known;

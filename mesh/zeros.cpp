@@ -8,7 +8,7 @@ namespace {
 
 using cpu::Kernel;
 
-constexpr std::size_t most_sheets = 8;
+constexpr std::size_t most_sheets = 16;
 
 void add(const Zeros &zeros, Zeros &all) {
     all.known = all.known && zeros.known;

@@ -239,7 +239,12 @@ TEST_CASE("where the field changes its sign in a box one of its sheets is 0") {
           "polygon([[0.1, -0.5], [0.5, -0.4], [0.2, 0.5], [0.3, 0]]).revolve()",
           "polygon([[-0.5, -0.5], [0.5, 0.5], [0.5, -0.5], [-0.5, 0.5]]).extrude(0.6).rotate(1)",
           "cone(0.6, 1)", "capped_torus(0.5, 0.2, 60deg)", "box(0.8) | box(0.8).translate(x: 0.8)",
-          "round_union(0.2, box(0.8), polygon([[0, 0], [0.7, 0], [0.3, 0.6]]).extrude(1))"}) {
+          "round_union(0.2, box(0.8), polygon([[0, 0], [0.7, 0], [0.3, 0.6]]).extrude(1))",
+          "octahedron(0.7)", "octahedron(0.6).rotate(0.3, axis: [1, 2, 3])", "dodecahedron(0.7)",
+          "icosahedron(0.6).rotate(0.3, axis: [1, 2, 3])",
+          "sphere(0.4) | sphere(0.4).translate(x: 0.8) | sphere(0.3).translate(y: 0.7)",
+          "(octahedron(0.7) - sphere(0.3).translate(x: 0.4)) | sphere(0.3).translate(z: -0.6)",
+          "box(0.9).repeat_mirror([0.5, 1, 1]) & sphere(0.6)"}) {
         INFO(text);
         const mesh::Field field(scene_of(text), 0, {});
         mesh::Evaluator evaluator(field);
@@ -250,6 +255,27 @@ TEST_CASE("where the field changes its sign in a box one of its sheets is 0") {
             const float side = std::exp2(width(dice));
             for (std::size_t i = 0; i < 3; ++i) lo[i] = place(dice), hi[i] = lo[i] + side;
             const mesh::Border border = mesh::border_over(evaluator, *field.whole, boxes, lo, hi);
+            if (border.linear) {
+                mesh::Points points;
+                for (int k = 0; k < 16; ++k) {
+                    mesh::Point p{};
+                    for (std::size_t i = 0; i < 3; ++i)
+                        p[i] = k < 8 ? (k >> i & 1 ? hi[i] : lo[i])
+                                     : std::min(hi[i], lo[i] + share(dice) * (hi[i] - lo[i]));
+                    points.add(p);
+                }
+                std::vector<float> values;
+                mesh::values_at(evaluator, *field.whole, points, values);
+                const mesh::Point at = mesh::middle_point(lo, hi);
+                double beyond = -1; // what is said of the field
+                for (std::size_t k = 0; k < points.size(); ++k) {
+                    double plane = border.linear->value;
+                    for (std::size_t i = 0; i < 3; ++i)
+                        plane += border.linear->slope[i] * (double(points.at[i][k]) - at[i]);
+                    beyond = std::max(beyond, std::fabs(plane - values[k]) - border.linear->off);
+                }
+                CHECK(beyond <= 0);
+            }
             if (!border.zeros.known) continue;
             ++known;
             for (int way = 0; way < ways; ++way) {
@@ -310,6 +336,11 @@ TEST_CASE("the area of solids that are known lies between two numbers, which are
         {"sphere(1) & sphere(1).translate(x: 1)", 2 * pi, 0.06},
         {"sphere(1) - sphere(1).translate(x: 1)", 4 * pi, 0.06},
         {"box(2) - box([1, 1, 3])", 24 - 2 + 8, 0.06},
+        // Of faces that folds make of one, and of balls that touch.
+        {"octahedron(1)", 4 * std::sqrt(3.0), 0.08},
+        {"dodecahedron(1)", 10.514622, 0.06},
+        {"icosahedron(1)", 9.574541, 0.12},
+        {"sphere(1) | sphere(1).translate(x: 2)", 8 * pi, 0.2},
         {"capsule([-1, 0, 0], [1, 0, 0], 0.3)", 4 * pi * 0.09 + 2 * pi * 0.3 * 2, 0.15},
         // Blends of balls that are farther apart than they reach, and of one with itself: less by a
         // quarter of the radius.
