@@ -230,6 +230,26 @@ TEST_CASE("the field lies about the plane that is said, wherever it is sampled")
     CHECK(close > 150); // faces of boxes, for one
 }
 
+TEST_CASE("a smooth blend of next to no radius has the slopes of its parts, and no mean of them") {
+    // Below 1e-9 it is the lesser of both (ir/blends.h).
+    const mesh::Field field(
+        scene_of("param r = 1e-10 in 0..1\nsmooth_union(r, plane(X, 0), plane(Y, 0)) & box(1)"), 0,
+        {});
+    mesh::Evaluator evaluator(field);
+    cpu::Boxes boxes;
+    const float half = 1e-11f;
+    const mesh::Point lo{-half, -half, -half}, hi{half, half, half};
+    const auto linear = mesh::linear_over(evaluator, *field.whole, boxes, lo, hi);
+    REQUIRE(linear);
+    mesh::Points points;
+    points.add({-half, half, 0});
+    std::vector<float> values;
+    mesh::values_at(evaluator, *field.whole, points, values);
+    CHECK(values[0] <= -0.9f * half);
+    const double plane = linear->value + (linear->slope[1] - linear->slope[0]) * double(half);
+    CHECK(std::fabs(plane - values[0]) <= linear->off);
+}
+
 TEST_CASE("where the field changes its sign in a box one of its sheets is 0") {
     constexpr int boxes_of_each = 600, ways = 12;
     std::size_t known = 0, roots = 0;
