@@ -2,6 +2,7 @@
 #include "api/mesh_advice.h"
 
 #include "mesh/grid.h"
+#include "mesh/loose.h"
 #include "mesh/pieces.h"
 #include "mesh/thin.h"
 
@@ -88,46 +89,6 @@ std::string advice_on_pieces(const ir::Scene &scene, const fathom::mesh::Setting
                        "sharp edge there is about {:.2g} thick{}",
                        vertices.size(), vertices.size() > looked_at + 1 ? "at least " : "",
                        splinters, where, shown_by(where, lattice, made.box));
-}
-
-// Of cells that stay undecided though nothing thin is seen there: where ranges and bound are loose.
-// How much smaller boxes have to be to leave surface out, in most of the cells; 0: they do not do it.
-double shrunk_to_decide(const fathom::mesh::Field &field, const fathom::mesh::Lattice &lattice,
-                        const std::vector<fathom::mesh::Cell> &cells) {
-    constexpr std::size_t looks = 64;
-    constexpr int halvings = 10;
-    using fathom::mesh::Point;
-    fathom::mesh::Evaluator evaluator(field);
-    fathom::cpu::Boxes boxes;
-    boxes.count = 16;
-    std::vector<int> needed;
-    for (std::size_t n = 0; n < std::min(looks, cells.size()); ++n) {
-        const fathom::mesh::Cell &cell = cells[n * cells.size() / std::min(looks, cells.size())];
-        const std::int32_t side = lattice.cells(cell.level);
-        const Point lo = point_of(lattice, cell.at),
-                    hi = point_of(lattice, fathom::mesh::corner(cell.at, side, 7));
-        int level = 0;
-        for (; level < halvings; ++level) {
-            double squares = 0;
-            for (std::size_t i = 0; i < 3; ++i) {
-                const float middle = 0.5f * (lo[i] + hi[i]),
-                            half = std::ldexp(0.5f * (hi[i] - lo[i]), -level);
-                squares += double(half) * half;
-                for (std::size_t k = 0; k < boxes.count; ++k) {
-                    boxes.lo[i][k] = k < 8 ? middle - half : middle;
-                    boxes.hi[i][k] = k < 8 ? middle + half : middle;
-                }
-            }
-            ranges_over(evaluator, *field.whole, boxes);
-            if (space_of(evaluator, 0, std::sqrt(squares), lattice.ulp, true, true) !=
-                fathom::mesh::Space::Open)
-                break;
-        }
-        needed.push_back(level);
-    }
-    std::ranges::sort(needed);
-    const int most = needed.empty() ? halvings : needed[3 * needed.size() / 4];
-    return most < halvings ? std::ldexp(1.0, most) : 0;
 }
 
 // What decides such cells: a sentence.
