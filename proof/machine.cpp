@@ -151,6 +151,8 @@ Machine::Machine(const Tape &tape, const Ranges &ranges, bool bends)
     made_by_.assign(tape_.first.size(), -1);
     for (std::size_t i = 0; i < tape_.each.size(); ++i)
         if (tape_.each[i].form != Form::Loop) made_by_[tape_.each[i].out] = std::int32_t(i);
+    if (tape_.has_majorants)
+        for (Slot s = 0; s < tape_.size.size(); ++s) owner_.insert(owner_.end(), tape_.size[s], s);
     run(tape.once);
 }
 

@@ -158,8 +158,9 @@ class Machine {
 
   private:
     static constexpr double infinity_ = ir::rounding::infinity;
-    friend struct Step;    // the rules of one instruction (instruction_rules.h)
-    friend struct FarStep; // … and in endless cells (machine_far.cpp)
+    friend struct Step;      // the rules of one instruction (instruction_rules.h)
+    friend struct FarStep;   // … and in endless cells (machine_far.cpp)
+    friend struct Majorants; // … of a quotient by what scales it (machine_majorants.cpp)
     void run(const std::vector<Instruction> &block);
     void conclude();
     bool is_one_value(Slot s) const;
@@ -179,6 +180,7 @@ class Machine {
     void hold_univariate(const Instruction &instruction);
     void hold_angle(const Instruction &instruction);
     void hold_triangle(const Instruction &instruction);
+    void hold_majorant(const Instruction &instruction);
     void fail(const Instruction &instruction, Trouble why);
     void copy(Slot from, Slot to);
     void join(Slot into, Slot other, bool jump, NodeId cause);
@@ -260,6 +262,10 @@ class Machine {
     std::size_t work_ = 0;
     Ways *ways_ = nullptr;              // in a run by ways
     std::vector<std::int32_t> made_by_; // by slot: the instruction of Tape::each, or -1
+    std::vector<Slot> owner_;           // by component, where the tape has majorants
+    struct {
+        int asked = 0, told = 0, left = 0;
+    } majorants_; // cells in which they were asked for, and said more; left before the next are
     std::vector<bool> still_; // by slot: not computed anew by each run; none before runs by ways
 };
 

@@ -46,6 +46,7 @@ void Machine::step(const Instruction &instruction) {
     if (instruction.univariate) hold_univariate(instruction);
     if (instruction.from_axis) hold_angle(instruction);
     if (instruction.op == Op::Asin || instruction.op == Op::Acos) hold_triangle(instruction);
+    if (instruction.has_majorant) hold_majorant(instruction);
     if (instruction.stands_at) {
         value_[tape_.first[instruction.out]] = *instruction.stands_at;
         relative_[instruction.out] = ir::rounding::infinity; // it was that of another value

@@ -173,6 +173,8 @@ struct Prover {
 
     FieldBound bound_once(ir::NodeId field, const Place &here, bool own);
     FieldBound bound_written(ir::NodeId field, const Domain &domain, const Budget &budget);
+    std::optional<FieldBound> bound_by_scale(ir::NodeId field, const Domain &domain,
+                                             const Budget &budget);
     FieldBound bound_by_values(ir::NodeId field, const Domain &domain, const Budget &budget);
     // The bound that was found as a number, or, where that is worth it, as a formula of params.
     Steepness by_params(ir::ShapeId id, ir::NodeId field, double whole);

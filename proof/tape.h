@@ -61,7 +61,8 @@ struct Instruction {
     bool whole = false; // a Mod of whole numbers by a power of two from 1 on (exact.h)
     bool wavers =
         false; // it reads a number that is not the same one twice for rounding (steadiness.h)
-    bool cancels = false; // a step whose jumps the result does not see (discontinuities.h)
+    bool has_majorant = false; // a quotient whose divisor is scaled as it is (majorants.h)
+    bool cancels = false;      // a step whose jumps the result does not see (discontinuities.h)
     Slot out = 0;
     std::vector<Slot> args;
     std::uint32_t payload = 0; // the op's; of a Loop: index into Tape::loops
@@ -149,9 +150,10 @@ struct Tape {
     std::vector<std::uint8_t> size;   // by slot: how many
     std::uint32_t components = 0;
     Slot result = 0;
-    bool grows = false;     // some values may leave single precision
-    bool near = false;      // what cancels does so where no coordinate is above `near_enough` alone
-    bool too_large = false; // the field was cut off while flattening; nothing may be concluded
+    bool grows = false; // some values may leave single precision
+    bool near = false;  // what cancels does so where no coordinate is above `near_enough` alone
+    bool has_majorants = false; // some instruction has one
+    bool too_large = false;     // the field was cut off while flattening; nothing may be concluded
     std::optional<int> winds_about; // an axis: seen from coordinates that turn about it (winding.h)
     std::size_t length() const;
 };

@@ -9,6 +9,7 @@
 #include "proof/guarded.h"
 #include "proof/interpolation.h"
 #include "proof/linear_maps.h"
+#include "proof/majorants.h"
 #include "proof/means.h"
 #include "proof/polar.h"
 #include "proof/radial.h"
@@ -419,6 +420,7 @@ Slot Flattener::quotient(Scope &scope, NodeId id, Instruction out) {
     if (const auto larger = without_factors(scope, id)) return slot(scope, *larger);
     find_radial(scope, id, out);
     find_parallel(scope, id, out);
+    if (!scope.loop && are_scaled_alike(graph, a, b)) out.has_majorant = tape.has_majorants = true;
     return emit_plain(scope, id, std::move(out));
 }
 

@@ -3,6 +3,7 @@
 // docs/lipschitz.md, 2.12.
 #include "ir/passes/inline.h"
 #include "ir/passes/walk.h"
+#include "proof/majorants.h"
 #include "proof/ordered.h"
 #include "proof/prover.h"
 
@@ -36,6 +37,8 @@ std::optional<NodeId> whole_param(const ir::Graph &graph, NodeId root) {
 } // namespace
 
 FieldBound Prover::bound_written(NodeId field, const Domain &domain, const Budget &budget) {
+    if (!flattening.written.contains(field))
+        if (const auto by_scale = bound_by_scale(field, domain, budget)) return *by_scale;
     FieldBound out = bound_field(flattening, ranges, field, domain, budget);
     if (std::isfinite(out.lipschitz) || flattening.written.contains(field)) return out;
     // of each power that a whole param can be it may be known that it is not singular
@@ -56,6 +59,21 @@ FieldBound Prover::bound_written(NodeId field, const Domain &domain, const Budge
     if (!jumps && !has_powers) return out;
     const FieldBound by_values = bound_by_values(written.root, domain, budget);
     return std::isfinite(by_values.lipschitz) ? by_values : out;
+}
+
+// Of a field that divides by a scale which its loops carry along: what they multiply is seen where
+// they are written out (2.45).
+std::optional<FieldBound> Prover::bound_by_scale(NodeId field, const Domain &domain,
+                                                 const Budget &budget) {
+    if (!may_divide_by_scale(graph, field)) return {};
+    const ir::WithoutCalls written = ir::without_loops(graph, field, max_nodes_written);
+    work.take(max_nodes_written);
+    if (!written.all || !divides_by_scale(graph, written.root)) return {};
+    flattening.written[field] = written.root;
+    FieldBound out = bound_field(flattening, ranges, field, domain, budget);
+    if (std::isfinite(out.lipschitz)) return out;
+    flattening.written.erase(field);
+    return {};
 }
 
 // The greatest over the values that a whole param can have.
