@@ -35,7 +35,7 @@ NodeId unsplat(const ir::Graph &graph, NodeId id) {
 
 } // namespace
 
-bool are_scaled_alike(const ir::Graph &graph, NodeId numerator, NodeId divisor) {
+bool are_scaled_alike(const ir::Graph &graph, NodeId numerator, NodeId divisor, Work &work) {
     std::unordered_set<NodeId> factors{unsplat(graph, divisor)};
     const auto is_product = [&](NodeId id) {
         return graph[id].op == Op::Mul || graph[id].op == Op::Div;
@@ -45,6 +45,7 @@ bool are_scaled_alike(const ir::Graph &graph, NodeId numerator, NodeId divisor) 
             for (const NodeId arg : graph.args(id))
                 if (graph.reads(arg).point) factors.insert(unsplat(graph, arg));
     const std::vector<NodeId> above = terms_below(graph, numerator, true);
+    work.take(above.size() / 8);
     for (const NodeId id : above)
         if (is_product(id))
             for (const NodeId arg : graph.args(id))
@@ -52,10 +53,10 @@ bool are_scaled_alike(const ir::Graph &graph, NodeId numerator, NodeId divisor) 
     return false;
 }
 
-bool divides_by_scale(const ir::Graph &graph, NodeId field) {
+bool divides_by_scale(const ir::Graph &graph, NodeId field, Work &work) {
     for (const NodeId id : terms_below(graph, field, true))
         if (graph[id].op == Op::Div && graph.reads(graph.arg(id, 1)).point &&
-            are_scaled_alike(graph, graph.arg(id, 0), graph.arg(id, 1)))
+            are_scaled_alike(graph, graph.arg(id, 0), graph.arg(id, 1), work))
             return true;
     return false;
 }

@@ -420,7 +420,8 @@ Slot Flattener::quotient(Scope &scope, NodeId id, Instruction out) {
     if (const auto larger = without_factors(scope, id)) return slot(scope, *larger);
     find_radial(scope, id, out);
     find_parallel(scope, id, out);
-    if (!scope.loop && are_scaled_alike(graph, a, b)) out.has_majorant = tape.has_majorants = true;
+    if (!scope.loop && are_scaled_alike(graph, a, b, context.work))
+        out.has_majorant = tape.has_majorants = true;
     return emit_plain(scope, id, std::move(out));
 }
 

@@ -68,7 +68,7 @@ std::optional<FieldBound> Prover::bound_by_scale(NodeId field, const Domain &dom
     if (!may_divide_by_scale(graph, field)) return {};
     const ir::WithoutCalls written = ir::without_loops(graph, field, max_nodes_written);
     work.take(max_nodes_written);
-    if (!written.all || !divides_by_scale(graph, written.root)) return {};
+    if (!written.all || !divides_by_scale(graph, written.root, work)) return {};
     flattening.written[field] = written.root;
     FieldBound out = bound_field(flattening, ranges, field, domain, budget);
     if (std::isfinite(out.lipschitz)) return out;
