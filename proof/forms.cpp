@@ -100,6 +100,18 @@ bool all_whole(Graph &graph, NodeId id) {
 
 } // namespace
 
+namespace {
+
+// x - c, and of y + c or c + y just y.
+NodeId without_term(Graph &graph, NodeId x, NodeId c) {
+    if (graph[x].op == Op::Add)
+        for (int i = 0; i < 2; ++i)
+            if (graph.arg(x, i) == c) return graph.arg(x, 1 - i);
+    return graph.sub(x, c);
+}
+
+} // namespace
+
 std::optional<WaveParts> wave(Graph &graph, NodeId id) {
     const ir::Node node = graph[id]; // a copy: nodes are added below
     if (node.op != Op::Sub && node.op != Op::Add) return {};
@@ -114,15 +126,16 @@ std::optional<WaveParts> wave(Graph &graph, NodeId id) {
         if (graph[a].op == Op::Mod && less_half(b, graph.arg(a, 1))) {
             NodeId m = graph.arg(a, 1);
             // x % m - m/2 = w(x - m/2), w the wave that passes through 0 at 0.
-            return WaveParts{graph.sub(graph.arg(a, 0), node.op == Op::Sub ? b : graph.neg(b)), m};
+            const NodeId middle = node.op == Op::Sub ? b : graph.neg(b);
+            return WaveParts{without_term(graph, graph.arg(a, 0), middle), m};
         }
         if (graph[a].op == Op::Fract) {
             auto half = number(graph, b);
             if (half && *half == (node.op == Op::Sub ? 0.5 : -0.5)) {
                 NodeId one = graph.number(1);
                 if (ir::components(node.type) > 1) one = graph.splat(one, node.type);
-                return WaveParts{
-                    graph.sub({graph.arg(a, 0), graph.splat(graph.number(0.5), node.type)}), one};
+                const NodeId middle = graph.splat(graph.number(0.5), node.type);
+                return WaveParts{without_term(graph, graph.arg(a, 0), middle), one};
             }
         }
     }

@@ -264,8 +264,9 @@ class Machine {
     std::vector<std::int32_t> made_by_; // by slot: the instruction of Tape::each, or -1
     std::vector<Slot> owner_;           // by component, where the tape has majorants
     struct {
-        int asked = 0, told = 0, left = 0;
-    } majorants_; // cells in which they were asked for, and said more; left before the next are
+        double most = 0; // that they said of a cell
+        int left = 0;    // cells of less before they are asked again
+    } majorants_;
     std::vector<bool> still_; // by slot: not computed anew by each run; none before runs by ways
 };
 

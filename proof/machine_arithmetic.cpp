@@ -241,10 +241,12 @@ void Step::odd_power() {
     finish(times(most, norm(0)), false);
 }
 
+// Of what is odd it is odd, too: w(-x) is -w(x).
 void Step::wave() {
-    bool bad = norm(1) > 0;
+    bool bad = norm(1) > 0, odd_period = false;
     for (int c = 0; c < n; ++c) {
         Interval x = value(0, c), m = value(1, c);
+        odd_period = odd_period || odd(1, c);
         if (m.lo <= 0) {
             bad = true;
             set(c, Interval::everything(), none);
@@ -261,10 +263,11 @@ void Step::wave() {
         if (turns.is_point() && turns.finite())
             set(c, x - m * turns, grad(0, c), odd(0, c));
         else
-            set(c, {-m.hi / 2, m.hi / 2}, grad(0, c), !cancels() && !zero(grad(0, c)));
+            set(c, {-m.hi / 2, m.hi / 2}, grad(0, c),
+                odd(0, c) || (!cancels() && !zero(grad(0, c))));
     }
     if (bad) return fail(Trouble::Jump);
-    finish(norm(0), any_odd);
+    finish(norm(0), odd_period);
     machine.cause_[out] = in.node;
 }
 

@@ -328,14 +328,15 @@ double Majorants::growth_in_arm(Part d) {
     return plus(ratio_of(growth(product->rest), product->least), slope_over(*product));
 }
 
-// |J(v/d)| <= |J_v|/|d| + |v| |grad d|/d^2. Where that mostly says nothing new it is asked less often.
+// |J(v/d)| <= |J_v|/|d| + |v| |grad d|/d^2. Where the rules for each op say less than this mostly
+// does it is asked now and then.
 void Machine::hold_majorant(const Instruction &instruction) {
-    constexpr int trials = 16, one_in = 4, pause = 128;
-    constexpr double much_less = 0.9;
+    constexpr int seldom = 8;
     const Slot out = instruction.out, above = instruction.args[0], below = instruction.args[1];
     if (norm_[out] == infinity || norm_[out] == 0) return;
-    auto &[asked, told, left] = majorants_;
-    if (left > 0) return static_cast<void>(--left);
+    auto &[most, left] = majorants_;
+    if (norm_[out] <= most && left-- > 0) return;
+    left = seldom;
     for (const Slot s : {above, below})
         for (std::uint32_t i = 0; i < tape_.size[s]; ++i)
             if (odd_[tape_.first[s] + i]) return;
@@ -346,13 +347,13 @@ void Machine::hold_majorant(const Instruction &instruction) {
     for (std::uint32_t i = 1; i < tape_.size[below]; ++i)
         if (majorants.source(tape_.first[below] + i) != d) return;
     using Wanted = Majorants::Wanted;
-    const double slope = majorants.bound(Wanted::Slope, v, d), before = norm_[out];
-    if (slope < before) hold_norm(out, up(slope + majorants.bound(Wanted::Turning, v, d), 8));
+    const double slope = majorants.bound(Wanted::Slope, v, d);
+    if (slope < norm_[out]) {
+        const double found = up(slope + majorants.bound(Wanted::Turning, v, d), 8);
+        most = std::max(most, found);
+        hold_norm(out, found);
+    }
     work_ += std::size_t(majorants.steps);
-    told += norm_[out] < much_less * before;
-    if (++asked < trials) return;
-    if (told * one_in < asked) left = pause;
-    asked = told = 0;
 }
 
 } // namespace fathom::proof
