@@ -13,8 +13,9 @@ using Vector = Majorants::Vector;
 using Part = Majorants::Part;
 
 namespace {
-constexpr int most_steps = 3'000; // of one quotient in a cell
-}
+constexpr int most_steps = 30'000;  // of one quotient in a cell
+constexpr std::size_t as_long = 16; // a step takes, as so many instructions
+} // namespace
 
 // Both of one sign, so that the sum has the size of both.
 std::optional<std::pair<Part, Part>> Majorants::sum_of(Part d) const {
@@ -353,7 +354,7 @@ void Machine::hold_majorant(const Instruction &instruction) {
         most = std::max(most, found);
         hold_norm(out, found);
     }
-    work_ += std::size_t(majorants.steps);
+    work_ += as_long * std::size_t(majorants.steps);
 }
 
 } // namespace fathom::proof
