@@ -1,8 +1,9 @@
 #!/bin/sh
 # What other programs say of the files that the program writes: meshes of all examples by admesh and
 # by gltf-validator, some of them by Blender, f3d, PrusaSlicer and OpenSCAD, a volume by vdb_print.
-# `scripts/judges.sh --quick` tries few scenes by admesh and vdb_print alone, which takes seconds (a test);
-# a judge that is not installed is left out there, and said to be. What they said last: docs/meshes.md, 10.
+# `scripts/judges.sh --quick` tries few scenes by admesh, gltf-validator and vdb_print alone, which takes seconds
+# (a test); a judge that is not installed is left out there, and said to be (.ci/run installs all three).
+# What they said last: docs/meshes.md, 10.
 # Leaves its files in build-judges/. Exit status 1 where a judge finds something.
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 3
 . "$root/scripts/setup.sh"
@@ -15,8 +16,7 @@ if $quick; then
 else
     out=$root/build-judges
     install_packages admesh libopenvdb-tools blender python3-numpy f3d prusa-slicer openscad xvfb xauth || exit 3
-    command -v npm >/dev/null || install_packages nodejs npm || exit 3 # gltf-validator is no Debian package
-    (mkdir -p "$out/npm" && cd "$out/npm" && npm install --no-audit --no-fund --silent gltf-validator@2.0.0-dev.3.10) || exit 3
+    fetch_gltf_validator || exit 3
 fi
 mkdir -p "$out" || exit 3
 failed=0
@@ -57,6 +57,14 @@ vdb_of() { # VDB
     fi
 }
 
+gltf_of() { # GLB…
+    if [ -d "$gltf_validator/node_modules/gltf-validator" ] && command -v node >/dev/null; then
+        node "$root/scripts/judge_gltf.cjs" "$gltf_validator" "$@" || failed=1
+    else
+        say_result gltf-validator - ok "is not installed: left out"
+    fi
+}
+
 if $quick; then
     cat >"$out/spikes.sdf" <<'END'
 box([2, 0.3, 2]).paint(tan)
@@ -65,7 +73,10 @@ END
     for scene in "$root/examples/02_csg.sdf" "$root/examples/05_twisted_tower.sdf" "$out/spikes.sdf"; do
         name=$(basename "$scene" .sdf)
         there admesh && mesh_of "$scene" "$out/$name.stl" --resolution 32 && admesh_of "$out/$name.stl"
+        mesh_of "$scene" "$out/$name.glb" --resolution 32
+        mesh_of "$scene" "$out/$name.parts.glb" --resolution 32 --parts
     done
+    gltf_of "$out"/*.glb
     if there vdb_print; then
         if "$fathom" volume "$out/spikes.sdf" -o "$out/spikes.vdb" --resolution 32 --certify off 2>"$out/words"; then
             vdb_of "$out/spikes.vdb"
@@ -84,7 +95,7 @@ for scene in "$root"/examples/*.sdf; do
     mesh_of "$scene" "$out/$name.glb" --resolution 48
     mesh_of "$scene" "$out/$name.parts.glb" --resolution 48 --parts
 done
-node "$root/scripts/judge_gltf.cjs" "$out/npm" "$out"/*.glb || failed=1
+gltf_of "$out"/*.glb
 
 for scene in gears 02_csg still_life; do
     "$fathom" volume "$root/examples/$scene.sdf" -o "$out/$scene.vdb" --resolution 48 --certify off \

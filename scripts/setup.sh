@@ -39,6 +39,15 @@ install_packages() {
     }
 }
 
+# Khronos' gltf-validator is no Debian package: where npm leaves it, so that node can load it from there.
+gltf_validator="$root/build/npm"
+fetch_gltf_validator() {
+    [ -d "$gltf_validator/node_modules/gltf-validator" ] && return 0
+    command -v npm >/dev/null || install_packages npm || return 1
+    mkdir -p "$gltf_validator" &&
+        timeout 120 npm install --prefix "$gltf_validator" --no-audit --no-fund --silent gltf-validator@2.0.0-dev.3.10 >&2
+}
+
 # use_ccache: what is configured from here on compiles through ccache, where there is one.
 use_ccache() {
     command -v ccache >/dev/null && export CMAKE_CXX_COMPILER_LAUNCHER=ccache
