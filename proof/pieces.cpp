@@ -33,6 +33,7 @@ enum class How : std::uint8_t {
     AsItself,
     Remainder,
     Dot,
+    Turned, // by a matrix
     Splat,
     Swizzle,
     Make,
@@ -47,6 +48,7 @@ constexpr ir::OpTable<How> how_of_op{
     {Op::Trunc, How::Still},     {Op::ToFloat, How::Still},    {Op::Fract, How::AsItself},
     {Op::Mod, How::Remainder},   {Op::Dot, How::Dot},          {Op::Splat, How::Splat},
     {Op::Swizzle, How::Swizzle}, {Op::Make, How::Make},        {Op::Call, How::Call},
+    {Op::MatMul, How::Turned},
 };
 
 using Affine = std::map<NodeId, double>; // by part; numbers that are added do not count
@@ -101,6 +103,7 @@ class PieceReader {
     struct Mode {
         bool lengths = true;  // rows of q for |q|
         bool shallow = false; // vectors that are computed are parts as they are
+        bool placed = false;  // but for those whose components are rows as they are
         bool turns = false;   // so are sums of products of what varies
     };
     PieceReader(Graph &graph, int &steps, Mode mode)
@@ -135,6 +138,7 @@ class PieceReader {
     const int first_;
     const Mode mode_;
     std::vector<NodeId> of_;
+    int placed_ = 0; // down to this depth a row is a component as it is
     bool failed_ = false;
     std::vector<Decision> taken_;
     std::size_t next_ = 0;
@@ -262,17 +266,27 @@ class PieceReader {
             return add({}, component(b, i, depth + 1), *by);
         return part(id, i);
     }
+    // The components of v by every `step`th number of a constant, from the `first` one.
+    Affine weighted(NodeId v, NodeId constant, int first, int step, int depth) {
+        Affine sum;
+        for (int k = 0; k < ir::components(graph_[v].type); ++k)
+            sum = add(sum, component(v, k, depth + 1),
+                      graph_.constant_of(constant).value[std::size_t(first + k * step)]);
+        return sum;
+    }
     Affine product_sum(NodeId id, int depth) { // of a dot product
-        for (int k = 0; k < 2; ++k) {
-            const NodeId fixed = graph_.arg(id, k), moves = graph_.arg(id, 1 - k);
-            if (!graph_.is_constant(fixed)) continue;
-            Affine sum;
-            for (int c = 0; c < ir::components(graph_[fixed].type); ++c)
-                sum = add(sum, component(moves, c, depth + 1),
-                          graph_.constant_of(fixed).value[static_cast<std::size_t>(c)]);
-            return sum;
-        }
+        for (int k = 0; k < 2; ++k)
+            if (graph_.is_constant(graph_.arg(id, k)))
+                return weighted(graph_.arg(id, 1 - k), graph_.arg(id, k), 0, 1, depth);
         return part(id, 0);
+    }
+    Affine turned_sum(NodeId id, int i, int depth) { // of a vector by a matrix
+        const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
+        const bool left = ir::is_matrix(graph_[a].type);
+        const NodeId matrix = left ? a : b, v = left ? b : a;
+        if (!graph_.is_constant(matrix)) return part(id, i);
+        const int side = ir::components(graph_[v].type); // matrices are stored by columns
+        return weighted(v, matrix, left ? i : i * side, left ? side : 1, depth);
     }
 
     // Is a term of the sum a product of what varies?
@@ -297,8 +311,9 @@ class PieceReader {
         }
         constexpr ir::OpSet made{Op::Make, Op::Swizzle, Op::Splat};
         if (mode_.shallow && ir::is_vector(node.type) && !made[node.op] &&
-            std::find(of_.begin(), of_.end(), id) == of_.end() && depth > 0)
+            std::find(of_.begin(), of_.end(), id) == of_.end() && depth > placed_)
             return part(id, i);
+        if (mode_.placed && made[node.op] && depth == placed_) ++placed_;
         switch (how_of_op[node.op]) {
         case How::Negative: return add({}, arg(0), -1);
         case How::Sum: {
@@ -322,6 +337,7 @@ class PieceReader {
         case How::AsItself: return arg(0);
         case How::Remainder: return varies(graph_.arg(id, 1)) ? part(id, i) : arg(0);
         case How::Dot: return product_sum(id, depth);
+        case How::Turned: return turned_sum(id, i, depth);
         case How::Splat: return component(graph_.arg(id, 0), 0, depth + 1);
         case How::Swizzle:
             return component(graph_.arg(id, 0), ir::swizzle_component(node.payload, i), depth + 1);
@@ -352,8 +368,10 @@ class PieceReader {
     std::vector<Affine> rows_of(const std::vector<NodeId> &of) {
         std::vector<Affine> rows;
         for (NodeId id : of)
-            for (int c = 0; c < ir::components(graph_[id].type); ++c)
+            for (int c = 0; c < ir::components(graph_[id].type); ++c) {
+                placed_ = 0;
                 rows.push_back(component(id, c, 0));
+            }
         return rows;
     }
 
@@ -462,10 +480,11 @@ class PieceReader {
 std::optional<Pieces> by_pieces(Graph &graph, const std::vector<NodeId> &of, int &steps) {
     std::optional<Pieces> best;
     double least = 0; // the best's norm
-    for (const PieceReader::Mode mode : {PieceReader::Mode{true, true, false},
-                                         {true, false, false},
-                                         {false, false, false},
-                                         {true, true, true}}) {
+    for (const PieceReader::Mode mode : {PieceReader::Mode{.shallow = true},
+                                         {.shallow = true, .placed = true},
+                                         {},
+                                         {.lengths = false},
+                                         {.shallow = true, .turns = true}}) {
         const auto found = PieceReader(graph, steps, mode).read(of);
         // Parts of several vectors have a norm that is not known here.
         const double worse = found && found->parts.size() > 1 ? 1 + 1e-6 : 1;

@@ -59,6 +59,7 @@ std::optional<Pieces> Flattener::pieces_of(NodeId id, const std::vector<NodeId> 
 
 Slot Flattener::emit_by_pieces(Scope &scope, NodeId id, Instruction out,
                                const std::vector<NodeId> &of) {
+    if (out.op == Op::MatMul) return emit(scope, std::move(out)); // whose norm is the matrix'
     const auto found = pieces_of(id, of);
     if (!found) return emit(scope, std::move(out));
     const Pieces &pieces = *found;

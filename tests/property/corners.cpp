@@ -164,9 +164,22 @@ class Swapped : public Chance {
     std::string fold() {
         const std::string two = of({"xy", "xz", "yz"}), a = "p." + two.substr(0, 1),
                           b = "p." + two.substr(1), back = two.substr(1) + two.substr(0, 1);
-        switch (pick(11)) {
+        switch (pick(15)) {
         case 8:
         case 9: return reflection();
+        case 10: return a + " = abs(" + a + ")" + of({"", " - 0.2"});
+        case 11:
+        case 12: {
+            const std::string matrix =
+                of({"mat2([0.8, 0.6], [-0.6, 0.8])", "mat2([0.8, -0.6], [0.6, 0.8])",
+                    "mat2([0, 1], [1, 0])", "mat2([1, 0.5], [0, 1])"});
+            const int side = pick(3);
+            return "p." + two + " = " +
+                   (side == 0   ? matrix + " * p." + two
+                    : side == 1 ? "p." + two + " * " + matrix
+                                : matrix + " * vec2(abs(" + a + "), " + b + ")");
+        }
+        case 13: return "p *= " + of({"1.25", "0.8", "-1"});
         case 0: return "p = abs(p) - " + between(0, 0.4);
         case 1:
             return "p." + two + " = if " + compared(a, b) + " { p." + back + " } else { p." + two +
