@@ -27,7 +27,8 @@ static void report_unknown_arguments(Interpreter &ev, std::string_view name,
                             : i + 1 == unknown.size() ? " and "
                                                       : ", ",
                             args[unknown[i]].name->text);
-    Fix fix = remedy_of_arguments(ev, name, formals, args, unknown, callee);
+    Fix fix = remedy_of_corners(ev, name, formals, args);
+    if (fix.edits.empty()) fix = remedy_of_arguments(ev, name, formals, args, unknown, callee);
     if (!fix.edits.empty() && ev.quiet == 0) join_sign_edits(ev, args, fix);
     Diagnostic &d = report(
         ev, Code::UnknownArgument, args[unknown[0]].name->span,
@@ -97,18 +98,6 @@ static bool is_point(const Interpreter &ev, const Value &v) {
            is_scalar(ev, ev.lists[v.id][0]);
 }
 
-// Where a call ends whose one argument too many, the last, is a colour or a material.
-static std::optional<Span> looks_like_paint(const Interpreter &ev, std::span<const Formal> formals,
-                                            std::span<const Argument> args) {
-    const Argument &last = args.back();
-    const bool paints = last.value.kind == ValueKind::Material || last.value.color;
-    const bool of_library = !formals.empty() && formals[0].declared.source;
-    if (args.size() != formals.size() + 1 || args.size() < 2 || !of_library || last.name ||
-        last.trailing || !paints)
-        return std::nullopt;
-    return behind_call(ev, last.span);
-}
-
 static void report_too_many(Interpreter &ev, std::string_view name, std::span<const Formal> formals,
                             std::span<const Argument> args, const Argument &first) {
     std::size_t given = 0;
@@ -126,11 +115,9 @@ static void report_too_many(Interpreter &ev, std::string_view name, std::span<co
         const Span row = join(args[1].span, args[3].span);
         const std::string written = fmt::format("rgb({})", text(ev.sources, row));
         d.help(fmt::format("write `{}`", written), {{row, written}});
-    } else if (const auto end = looks_like_paint(ev, formals, args)) { // `sphere(1, red)`
-        const std::string paint = fmt::format(".paint({})", text(ev.sources, first.span));
-        d.help(fmt::format("write `{}` behind it", paint),
-               {{{first.span.source, args[args.size() - 2].span.end, first.span.end}, ""},
-                {*end, paint}});
+    } else if (help_with_paint(ev, d, formals, args) ||
+               help_with_place(ev, d, name, formals, args)) {
+        return;
     } else if (args[0].value.kind == ValueKind::Shape) {
         help_with_shape(d, name);
         help_with_row(ev, d, name, formals, args);

@@ -97,6 +97,15 @@ bool told_of_block(Interpreter &ev, const Value &v, Span place, What what);
 // A call as it should be: the one in the description of the library's function, or made up for what
 // changes a shape; empty: none.
 std::string example_of(Interpreter &ev, std::string_view name, std::span<const Formal> formals);
+// For one argument too many, the last, that is a colour or a material; false: it is not that.
+bool help_with_paint(const Interpreter &ev, Diagnostic &d, std::span<const Formal> formals,
+                     std::span<const Argument> args);
+// For a solid that is given its place, its corners or its ends (place_remedies.cpp): false where it is not.
+bool help_with_place(Interpreter &ev, Diagnostic &d, std::string_view name,
+                     std::span<const Formal> formals, std::span<const Argument> args);
+// For `box(min: a, max: b)`; no edits: it is not that.
+Fix remedy_of_corners(const Interpreter &ev, std::string_view name, std::span<const Formal> formals,
+                      std::span<const Argument> args);
 // For an argument too many: it goes, where it is the last and all are sound.
 void leave_last_away(const Interpreter &ev, Diagnostic &d, std::span<const Argument> args,
                      const Argument &first);
