@@ -122,8 +122,9 @@ constexpr Row names[] = {
     {"float", "parsefloat tofloat"},
     {"int", "parseint toint"},
     {"print", "echo printf println"},
-    {"vec2", "vector2 float2 point2"},
-    {"vec3", "vector3 float3 point3"},
+    {"vec2", "vector2 float2 point2 half2 vec2f"},
+    {"vec3", "vector3 float3 point3 half3 vec3f fixed3"},
+    {"vec4", "vector4 float4 half4 vec4f fixed4"},
     {"mat2", "mat2x2 float2x2"},
     {"mat3", "mat3x3 float3x3 matrix3"},
     {"pi", "PI mpi"},
@@ -310,12 +311,13 @@ constexpr Row ways_of_types[] = {
 };
 
 constexpr Row types[] = {
-    {"float", "number real double f32 f64 num"},
+    {"float", "number real double f32 f64 num half fixed"},
     {"int", "integer i32 u32 usize"},
     {"bool", "boolean"},
     {"string", "str"},
-    {"vec2", "vector2 float2 vec2f"},
-    {"vec3", "vector3 float3 vec3f point"},
+    {"vec2", "vector2 float2 vec2f half2"},
+    {"vec3", "vector3 float3 vec3f point half3 fixed3"},
+    {"vec4", "vector4 float4 vec4f half4 fixed4"},
     {"color", "colour"},
     {"shape", "solid sdf"},
     {"mat3", "matrix"},

@@ -16,13 +16,31 @@ constexpr std::array<std::string_view, 24> type_words = {
     "float", "int",   "bool",  "string", "vec2",   "vec3",     "vec4",   "mat2",
     "mat3",  "mat4",  "color", "shape",  "shape2", "material", "light",  "double",
     "ivec2", "ivec3", "uint",  "bvec2",  "bvec3",  "field",    "region", "number"};
+// Of HLSL, Metal, WGSL, Rust, Unity and three.js.
+constexpr std::pair<std::string_view, std::string_view> types_of_others[] = {
+    {"float2", "vec2"},   {"float3", "vec3"},   {"float4", "vec4"},   {"half", "float"},
+    {"half2", "vec2"},    {"half3", "vec3"},    {"half4", "vec4"},    {"fixed", "float"},
+    {"fixed3", "vec3"},   {"fixed4", "vec4"},   {"double", "float"},  {"f32", "float"},
+    {"f64", "float"},     {"i32", "int"},       {"u32", "int"},       {"uint", "int"},
+    {"number", "float"},  {"vec2f", "vec2"},    {"vec3f", "vec3"},    {"vec4f", "vec4"},
+    {"float2x2", "mat2"}, {"float3x3", "mat3"}, {"float4x4", "mat4"}, {"mat2x2", "mat2"},
+    {"mat3x3", "mat3"},   {"mat4x4", "mat4"},   {"Vec2", "vec2"},     {"Vec3", "vec3"},
+    {"Vector2", "vec2"},  {"Vector3", "vec3"},  {"boolean", "bool"},  {"matrix3", "mat3"},
+};
 constexpr std::array<std::string_view, 5> math_modules = {"math", "Math", "np", "numpy", "glm"};
 constexpr std::array<std::string_view, 10> value_words = {
     "True", "False", "TRUE", "FALSE", "None", "null", "NULL", "nil", "undefined", "undef"};
 
 } // namespace
 
-bool is_type_word(std::string_view word) { return is_one_of(word, type_words); }
+bool is_type_word(std::string_view word) {
+    return is_one_of(word, type_words) || our_type(word) != word;
+}
+std::string_view our_type(std::string_view type) {
+    for (const auto &[theirs, ours] : types_of_others)
+        if (theirs == type) return ours;
+    return type;
+}
 bool is_foreign_value(std::string_view name) { return is_one_of(name, value_words); }
 bool is_foreign_module(std::string_view name) {
     return name == "console" || is_one_of(name, math_modules);

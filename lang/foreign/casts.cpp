@@ -1,5 +1,5 @@
 // Calls that name a type, as C++, Java and Rust have them, and casts: `static_cast<int>(x)`,
-// `std::make_shared<Sphere>(1)`, `parse::<f32>()`, `(int)x`. The words are put right before layout, so
+// `std::make_shared<Sphere>(1)`, `parse::<f32>()`, `(int)x`, and vectors of a type. The words are put right before layout, so
 // that all behind them is read and only the one mistake is told. No text of ours has such a form.
 #include "lang/foreign/word_changes.h"
 
@@ -22,7 +22,8 @@ class Casts : WordChanges {
     // Empty where there are none.
     std::vector<Token> run() {
         for (std::size_t i = 0; i < words_.size(); ++i)
-            if (!by_type_argument(i) && !by_type_in_parentheses(i) && changed_)
+            if (!vector_of_type(i) && !by_type_argument(i) && !by_type_in_parentheses(i) &&
+                changed_)
                 out_.push_back(words_[i]);
         return std::move(out_);
     }
@@ -39,6 +40,23 @@ class Casts : WordChanges {
                 return 0;
         }
         return 0;
+    }
+
+    // WGSL's `vec3<f32>`, as a type or called.
+    bool vector_of_type(std::size_t &i) {
+        constexpr std::array<std::string_view, 3> vectors = {"vec2", "vec3", "vec4"};
+        if (kind(i) != Tok::Name || !is_one_of(text(i), vectors) || kind(i + 1) != Tok::Less ||
+            kind(i + 2) != Tok::Name || !is_one_of(text(i + 2), cast_types) ||
+            kind(i + 3) != Tok::Greater)
+            return false;
+        diagnostics_
+            .add(Code::ForeignSyntax, words(i, i + 3),
+                 "a vector has no type beside its length: its numbers are floats")
+            .help("write `" + std::string(text(i)) + "`", {{words(i + 1, i + 3), ""}});
+        begin_change(i);
+        out_.push_back(words_[i]);
+        i += 3;
+        return true;
     }
 
     // `f<T>(…)`, `std::f<T>(…)`, `f::<T>(…)`.

@@ -78,12 +78,14 @@ std::string ForeignSyntax::parameters_text(Index open) const {
         const bool type_first = kind(i) == Tok::Name && kind(named) == Tok::Name && named < end;
         const std::string rest(end > i ? text(token(i).begin, token(end - 1).end) : "");
         if (match(i) > i && match(i) < end && is_one_of(kind(i), {Tok::StrayBrace, Tok::Trailing}))
-            out += text(token(i + 1).begin, token(match(i) - 1).end); // `{ a, b }: Options`
+            out += text(token(i + 1).begin, token(match(i) - 1).end);      // `{ a, b }: Options`
+        else if (!type_first && kind(i + 1) == Tok::Colon && i + 3 == end) // `x: number`
+            out += std::string(text(i)) + ": " + std::string(our_type(text(i + 2)));
         else if (!type_first)
             out += rest;
         else
             out += std::string(text(named)) +
-                   (is_their_own(text(i)) ? "" : ": " + std::string(text(i))) +
+                   (is_their_own(text(i)) ? "" : ": " + std::string(our_type(text(i)))) +
                    std::string(text(token(named).end, token(end - 1).end));
         i = end + 1;
     }
@@ -285,13 +287,13 @@ void ForeignSyntax::foreign_function(Index first, Index name, bool has_type) {
     Index after = close + 1; // behind the result's type
     if (kind(after) == Tok::Arrow) {
         while (!ends_statement(after) && kind(after) != Tok::Colon && !begins_body(after)) ++after;
-        head += " " + std::string(text(token(close + 1).begin, token(after - 1).end));
+        head += " -> " + std::string(our_type(text(token(close + 2).begin, token(after - 1).end)));
     } else if (kind(after) == Tok::Colon && kind(after + 1) == Tok::Name &&
                !token(after + 1).first_on_line && begins_body(after + 2)) {
-        head += " -> " + std::string(text(after + 1));
+        head += " -> " + std::string(our_type(text(after + 1)));
         after += 2;
     } else if (has_type && !is_their_own(text(name - 1)))
-        head += " -> " + std::string(text(name - 1));
+        head += " -> " + std::string(our_type(text(name - 1)));
     module_head(first, after, head);
     std::vector<Edit> edits{{span(first, after - 1), head}};
     if (kind(after) == Tok::End && kind(after + 1) == Tok::StrayBrace && text(after) != ";") {
@@ -323,7 +325,7 @@ bool ForeignSyntax::foreign_head(Index first) {
     while (kind(name + 1) == Tok::Name) ++name;
     if (name == first || kind(name) != Tok::Name) return false;
     const std::string word(text(first)), declared(text(name));
-    const std::string type(text(name - 1));
+    const std::string type(our_type(text(name - 1)));
     const bool has_type = !is_one_of(type, qualifiers) && !is_one_of(type, function_words);
 
     if (kind(name + 1) == Tok::Open) {
