@@ -236,7 +236,11 @@ bool raises_e(const ir::Graph &graph, const std::vector<NodeId> &roots) {
 constexpr ir::OpSet told_of{Op::Floor, Op::Round, Op::Ceil, Op::Fract, Op::Mod, Op::Hash};
 
 // What makes the sides of a border agree, by what turns there.
-std::string way_to_meet(const std::optional<Op> &cause) {
+std::string way_to_meet(const std::optional<Op> &cause, bool by_list) {
+    if (by_list)
+        return "go from one entry of a list to the next without a jump, with the place limited "
+               "before `floor`: `let x = clamp(…, 0, last)`, then `mix(list[int(floor(x))], "
+               "list[int(floor(x)) + 1], fract(x))`; ";
     if (!cause || !told_of[*cause]) return "make both sides agree there, ";
     if (*cause == Op::Hash)
         return "give `hash` the number of the cell by `floor` or `round`, as in `hash(floor(p))`: "
@@ -244,6 +248,14 @@ std::string way_to_meet(const std::optional<Op> &cause) {
     return "where copies differ from cell to cell keep the distance below the way to the next "
            "copy, as in `min(d, 0.2)`, or let `repeat` look at the neighbours: "
            "`.repeat([1, 0, 0], (s, id) => …)`; ";
+}
+
+// How it is written so that its continuity is seen.
+std::string way_without_jump(const std::optional<Op> &cause) {
+    if (cause == Op::Sign)
+        return "`sign(x)` has a third value, 0 at 0: write `if x < 0 { -1 } else { 1 }`, or "
+               "`abs(x) - c` for `x - c*sign(x)` whose own sign does not matter, ";
+    return "write it with `min`, `max`, `clamp` or `abs`, whose continuity is known, ";
 }
 
 } // namespace
@@ -299,11 +311,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     switch (b.trouble) {
     case Trouble::Jump: {
         const bool by_list = reads_list_by_point(graph, scene.shapes[id].args);
-        const std::string between =
-            "go from one entry of a list to the next without a jump, with the place limited before "
-            "`floor`: `let x = clamp(…, 0, last)`, then `mix(list[int(floor(x))], "
-            "list[int(floor(x)) + 1], fract(x))`; ";
-        const std::string meeting = way_to_meet(b.cause);
+        const std::string meeting = way_to_meet(b.cause, by_list);
         const auto [one_side, other_side] = two_points(b.side_a, b.side_b, dims);
         const auto [one, other] = two_numbers(b.value_a, b.value_b);
         const auto inexact = inexact_number(graph, scene.shapes[id].args);
@@ -320,8 +328,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                                           what + " jumps near " + point_text(b.where, dims)))
                 d->note("it is " + one + " at " + one_side + " and " + other + " at " + other_side +
                         held + ": " + cause)
-                    .help(few_digits + (by_list ? between : meeting) +
-                          "keep the jump out of the region with " +
+                    .help(few_digits + meeting + "keep the jump out of the region with " +
                           (has_region ? "`within:`, " : "`.within(…)`, ") + assume);
         } else if (Diagnostic *d =
                        report_at(id, blamed, Code::LipschitzUnbounded,
@@ -333,11 +340,8 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
                                          held + "), but that they meet everywhere is not seen"
                                    : ", and that its sides meet is not seen"))
                 .help(few_digits +
-                      (by_list ? between
-                       : b.cause && told_of[*b.cause]
-                           ? meeting
-                           : "write it with `min`, `max`, `clamp` or `abs`, whose continuity "
-                             "is known, ") +
+                      (by_list || (b.cause && told_of[*b.cause]) ? meeting
+                                                                 : way_without_jump(b.cause)) +
                       assume);
         return;
     }
