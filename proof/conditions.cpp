@@ -16,6 +16,8 @@ using ir::Op;
 namespace {
 
 constexpr int max_boxes = 4096;
+// Instructions, and numbers that boxes are made of: for one condition, and for all of a scene.
+constexpr std::size_t work_of_one = 2'000'000, work_of_all = 16'000'000;
 constexpr double grain = 1e-6; // by this much an order may be missed: a size is 0 there at worst
 
 // One number that a condition hangs on: a component of a variable that stands for a param, or time,
@@ -93,9 +95,15 @@ NodeId in_differences(ir::Graph &graph, NodeId condition) {
     return way ? graph.make(node.op, {graph.number(0), *way}) : condition;
 }
 
-// Is it true for all values? The box that is not decided is halved along its longest side.
+struct Halving {
+    std::size_t left = work_of_all;
+    bool ended = false; // before it was decided
+};
+
+// Is it true for all values? The box that is not decided is halved along its longest side, as long
+// as work is left; one is always looked at.
 bool always(Flattening &flattening, Ranges &ranges, NodeId condition,
-            const std::vector<Unknown> &unknowns) {
+            const std::vector<Unknown> &unknowns, Halving &search) {
     const Tape tape = flatten(flattening, condition);
     if (tape.too_large) return false;
     const double period = periods_of(tape, flattening.graph).period[0];
@@ -106,8 +114,15 @@ bool always(Flattening &flattening, Ranges &ranges, NodeId condition,
             all.back().hi = all.back().lo + period * (1 + 1e-9);
     }
     std::vector<std::vector<Interval>> boxes{all};
+    const std::size_t step = tape.once.size() + tape.each.size() + all.size() + 1;
+    std::size_t left = std::min(search.left, work_of_one);
     for (int tried = 0; !boxes.empty(); ++tried) {
-        if (tried == max_boxes) return false;
+        if (tried == max_boxes || (tried > 0 && left < step)) {
+            search.ended = true;
+            return false;
+        }
+        left -= std::min(left, step);
+        search.left -= std::min(search.left, step);
         const std::vector<Interval> box = boxes.back();
         boxes.pop_back();
         Cell cell;
@@ -138,8 +153,19 @@ bool always(Flattening &flattening, Ranges &ranges, NodeId condition,
 
 void Prover::test_conditions() {
     std::set<std::pair<NodeId, std::uint32_t>> seen;
+    Halving search;
     for (std::size_t i = 0; i < scene.conditions.size(); ++i) {
         const ir::Condition condition = scene.conditions[i];
+        if (work.spent()) {
+            if (!work.stopped() && !std::exchange(told_of_work, true))
+                diagnostics
+                    .add(Code::ProofLimit, condition.at,
+                         "the proof of this scene takes more work than is allowed: not all "
+                         "arguments "
+                         "are tested")
+                    .help("hang them on fewer params, or allow more by `--limit proof=…`");
+            return;
+        }
         if (!seen.emplace(condition.holds, condition.at.begin).second) continue;
         bool bound = true; // a loop's own variable is followed turn by turn
         for (NodeId var : graph.free_vars(condition.holds))
@@ -147,9 +173,10 @@ void Prover::test_conditions() {
         const Closed over = closed(graph, ranges, condition.holds);
         if (!bound || over.endless) continue;
         const auto holds = [&](NodeId node) {
-            return always(flattening, ranges, node, over.unknowns) ||
-                   always(flattening, ranges, in_differences(graph, node), over.unknowns);
+            return always(flattening, ranges, node, over.unknowns, search) ||
+                   always(flattening, ranges, in_differences(graph, node), over.unknowns, search);
         };
+        search.ended = false;
         if (holds(over.holds)) continue;
         const bool by_time =
             std::ranges::any_of(over.unknowns, [](const Unknown &one) { return one.time; });
@@ -162,7 +189,9 @@ void Prover::test_conditions() {
         else
             diagnostics
                 .add(Code::BadArgument, condition.at,
-                     condition.wanted + "; over all params and times it is not")
+                     condition.wanted + (search.ended
+                                             ? "; that it is over all params and times is not seen"
+                                             : "; over all params and times it is not"))
                 .help(
                     "narrow the param's range, or hold the argument with `clamp`; the time that is "
                     "covered ends at `render(time: …)`");

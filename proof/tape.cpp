@@ -319,8 +319,14 @@ std::unordered_set<NodeId> all_nodes_of(const ir::Graph &graph, NodeId root) {
     return seen;
 }
 
+constexpr std::size_t steps_of_flattening = 32; // of an instruction, in time
+
 Tape flattened(Flattening &context, NodeId root, bool unwound, const Cell *region) {
     Flattener flattener(context);
+    if (context.work.spent()) {
+        flattener.tape.too_large = true;
+        return std::move(flattener.tape);
+    }
     if (const auto it = context.written.find(root); it != context.written.end()) root = it->second;
     root = written_out(context.graph, root); // forms are seen through calls
     if (unwound) root = ir::without_loops(context.graph, root, max_nodes_unwound).root;
@@ -357,6 +363,7 @@ Tape flattened(Flattening &context, NodeId root, bool unwound, const Cell *regio
     Scope scope;
     scope.block = &flattener.tape.each;
     flattener.tape.result = flattener.slot(scope, root);
+    context.work.take(std::size_t(flattener.count) * steps_of_flattening);
     if (!flattener.tape.too_large) mark_wavering(flattener.tape);
     return std::move(flattener.tape);
 }

@@ -169,6 +169,10 @@ std::vector<Hostile> hostile_scenes() {
         {"70 messages of 8 MB", "",
          twice + "let s = d(\"abcdefgh\", 20)\n" + lines(70, [](int) { return "print(s)"; }) +
              "sphere(1)\n"},
+        {"many arguments of many params", "proof-limit",
+         lines(2000, [](int i) { return fmt::format("param a{} = 1 in 0..2", i); }) + "let r = " +
+             lines(2000, [](int i) { return fmt::format("a{} +", i); }) + "1\nunion {\n" +
+             lines(1500, [](int i) { return fmt::format("  sphere(r - {})", i); }) + "}\n"},
         {"a field of 700,000 terms", "memory-limit",
          "implicit(p => fold([for i in 0..8000 { i }], 0.0, (a, i) => a" +
              lines(90, [](int k) { return fmt::format(" + sin({} * p.x + i)", k); }) +
