@@ -132,6 +132,17 @@ std::string advice_of(const ir::Scene &scene, const fathom::mesh::Settings &sett
 
 std::string advice_on_drawn(const ir::Scene &scene, const fathom::mesh::Settings &settings,
                             const fathom::mesh::Made &made) {
+    if (made.widened > 0)
+        return fmt::format(
+            "walls thinner than cells are drawn by the solid grown by {0:.2g}, with "
+            "its vertices moved to the surface: gaps and holes narrower than {1:.2g} "
+            "may be closed",
+            made.widened, 2 * made.widened);
+    if (made.widened < 0)
+        return fmt::format("gaps thinner than cells are drawn by the solid shrunk by {0:.2g}, with "
+                           "its vertices moved to the surface: walls thinner than {1:.2g} may have "
+                           "holes",
+                           -made.widened, -2 * made.widened);
     constexpr std::size_t looks = 1024;
     constexpr std::size_t many = 8; // of these, one is thin: no mere edges and points
     constexpr std::size_t some = 8; // gaps: of one width, more or less, where no groove ends

@@ -87,6 +87,13 @@ void fill(Inquiry &inquiry) {
 
 } // namespace
 
+std::uint64_t volume_in_doubt(const Certificate &certificate, const Lattice &lattice) {
+    std::uint64_t sum = 0;
+    for (const Cell &cell : certificate.undecided)
+        sum += std::uint64_t{1} << (3 * (lattice.depth - cell.level));
+    return sum;
+}
+
 Form form_of(const Mesh &mesh) {
     const std::vector<std::uint32_t> pieces = pieces_of(mesh);
     Form form;
@@ -109,7 +116,7 @@ Certificate certify(const Field &field, const Settings &settings, const Made &ma
                     .field = field,
                     .trusts = true,
                     .allowed = side + made.simplified,
-                    .own = made.simplified == 0,
+                    .own = made.simplified == 0 && made.widened == 0,
                     .earlier = earlier,
                     // Boxes of twice what is allowed are looked up: in no more than five a side.
                     .by_root = Grid(origin, std::max(side, 0.5 * (side + made.simplified)))};

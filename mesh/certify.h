@@ -42,6 +42,9 @@ struct Certificate {
     bool certified() const { return undecided.empty() && unproved.empty(); }
 };
 
+// The volume of what is undecided, in cells of the finest level.
+std::uint64_t volume_in_doubt(const Certificate &certificate, const Lattice &lattice);
+
 // In how many pieces a closed mesh is, and how many handles they have.
 struct Form {
     std::size_t components = 0;

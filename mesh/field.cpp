@@ -11,9 +11,13 @@ constexpr float short_enough = 32; // kernels
 // How far a coordinate is beyond the nearer end, negative between them.
 float beyond(float x, float lo, float hi) { return std::max(lo - x, x - hi); }
 
-// The ranges of the cut-off field, from those of the field.
+// The ranges of the field as it is grown and cut off, from those of the scene's.
 void cut_ranges(Evaluator &evaluator, const cpu::Boxes &boxes) {
     const Field &field = evaluator.field;
+    for (std::size_t k = 0; field.wider != 0 && k < boxes.count; ++k) {
+        evaluator.ranges.result_lo[k] -= field.wider; // rounding is monotone
+        evaluator.ranges.result_hi[k] -= field.wider;
+    }
     if (!field.cut) return;
     const auto &[lo, hi] = *field.cut;
     for (std::size_t k = 0; k < boxes.count; ++k)
@@ -42,10 +46,10 @@ cpu::Selection steps_of(const Field &field, const cpu::ShortTape &tape, std::siz
 
 } // namespace
 
-Field::Field(const ir::Scene &scene, double time, const std::optional<ir::Box> &box)
+Field::Field(const ir::Scene &scene, double time, const std::optional<ir::Box> &box, float by)
     : program(cpu::compile(scene, scene.distance, cpu::Choices::Apart)),
       inputs(cpu::inputs_of(scene, time)), parts(cpu::prune_program_of(program, inputs)),
-      whole(std::make_shared<const cpu::ShortTape>(cpu::whole_tape(parts))),
+      whole(std::make_shared<const cpu::ShortTape>(cpu::whole_tape(parts))), wider(by),
       proved(scene.rounding.subtracted == 0) {
     for (const ir::TopLevel &top : scene.top_level)
         proved = proved && scene.facts[top.shape.index].status == ir::ProofStatus::Proved;
@@ -70,6 +74,8 @@ void values_at(Evaluator &evaluator, const cpu::ShortTape &tape, const Points &p
     float *to[] = {out.data()};
     cpu::evaluate(field.program, evaluator.values, in, to, points.size(),
                   tape.selection(field.parts), nullptr); // no tape here has a Cut
+    if (field.wider != 0)
+        for (float &value : out) value -= field.wider;
     if (!field.cut) return;
     const auto &[lo, hi] = *field.cut;
     for (std::size_t k = 0; k < points.size(); ++k)
@@ -85,6 +91,8 @@ void gradients_at(Evaluator &evaluator, const cpu::ShortTape &tape, const Points
     float *to[] = {out[0].data(), out[1].data(), out[2].data(), out[3].data()};
     cpu::evaluate_gradient(field.program, evaluator.gradients, in, to, points.size(),
                            tape.selection(field.parts));
+    if (field.wider != 0)
+        for (float &value : out[0]) value -= field.wider;
     if (!field.cut) return;
     const auto &[lo, hi] = *field.cut;
     for (std::size_t k = 0; k < points.size(); ++k)

@@ -27,8 +27,8 @@ struct Points {
 };
 
 struct Field {
-    // `cut`: the solid ends there, too.
-    Field(const ir::Scene &scene, double time, const std::optional<ir::Box> &cut);
+    // `cut`: the solid ends there, too. `wider`: it is grown by so much, before it is cut.
+    Field(const ir::Scene &scene, double time, const std::optional<ir::Box> &cut, float wider = 0);
     Field(const Field &) = delete;
     Field &operator=(const Field &) = delete;
     const cpu::Program program;
@@ -36,6 +36,7 @@ struct Field {
     const cpu::PruneProgram parts; // refers to `program`
     const std::shared_ptr<const cpu::ShortTape> whole;
     std::optional<std::array<Point, 2>> cut; // its ends
+    const float wider;                       // taken off each value
     // |value| is proved never to exceed the distance to the surface, in real arithmetic, and no
     // distance was lowered for the sake of rounding.
     bool proved = false;

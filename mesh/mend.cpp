@@ -1,6 +1,7 @@
 #include "mesh/mend.h"
 
 #include "mesh/thin.h"
+#include "mesh/widen.h"
 
 #include <algorithm>
 #include <cmath>
@@ -250,14 +251,6 @@ Choice affordable(const Patients &patients, const Lattice &lattice, double nodes
     return choice;
 }
 
-// The volume of what is undecided, in cells of the finest level.
-std::uint64_t volume_in_doubt(const Certificate &certificate, const Lattice &lattice) {
-    std::uint64_t sum = 0;
-    for (const Cell &cell : certificate.undecided)
-        sum += std::uint64_t{1} << (3 * (lattice.depth - cell.level));
-    return sum;
-}
-
 // Whether a round did so much that another is worth its time: it left less in doubt. Where all is in
 // reach anything else will do: about what touches, doubt may grow before it ends.
 bool gains(const Certificate &before, const Certificate &after, const Lattice &lattice,
@@ -288,14 +281,34 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
     settings.deeper = deeper;
     if (report) settings.progress = [&](double done) { return report(mesh_share * done); };
     Mended mended;
-    mended.made = make_mesh(scene, settings);
-    if (mended.made.failure != Failure::None) return mended;
+    mended.made = make_plain_mesh(scene, settings);
+    const bool unseen = mended.made.failure == Failure::Unseen;
+    if (mended.made.failure != Failure::None && !unseen) return mended;
     Progress progress;
     progress.report = report;
     progress.from = mesh_share;
     progress.to = first_share;
     const Field field(scene, settings.time, settings.bounds);
+    std::optional<Wider> wide =
+        draw_wider(scene, field, settings, mended.made, mended.made.octree.undecided, progress);
+    const auto take_wide = [&] {
+        mended.made = std::move(wide->made), mended.certificate = std::move(wide->certificate);
+    };
+    if (progress.cancelled) mended.made.failure = Failure::Cancelled;
+    if (progress.cancelled || (unseen && !wide)) return mended;
+    if (unseen || (wide && wide->certificate.certified())) {
+        take_wide();
+        return mended;
+    }
     mended.certificate = certify(field, settings, mended.made, nullptr, progress);
+    if (!wide && !progress.cancelled) { // what corners show may be crumbs
+        wide =
+            draw_wider(scene, field, settings, mended.made, mended.certificate.undecided, progress);
+        if (wide && wide->certificate.certified()) {
+            take_wide();
+            return mended;
+        }
+    }
     OctreeSettings octree;
     octree.threads = threads_of(settings);
     const std::size_t before = mended.made.octree.nodes.size();
@@ -331,6 +344,8 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
         ++mended.rounds;
         if (!gained && !may_wait) break;
     }
+    if (wide && doubt_of(wide->made, wide->certificate) < doubt_of(mended.made, mended.certificate))
+        take_wide();
     if (progress.cancelled) mended.made.failure = Failure::Cancelled;
     return mended;
 }

@@ -16,7 +16,7 @@ struct Mended {
 // those that the surface is drawn by, or to divide them so far would make the octree grow by more
 // than half a million nodes, and more than it was large; or until a round changes nothing, or little
 // where some doubt is out of reach (docs/meshes.md, 6). What is undecided then is listed.
-// `settings.deeper` is set here.
+// Walls and gaps thinner than cells are drawn wider first (widen.h). `settings.deeper` is set here.
 Mended make_certified_mesh(const ir::Scene &scene, Settings settings);
 
 } // namespace fathom::mesh

@@ -3,6 +3,7 @@
 #include "backend-cpu/prune/solid_box.h"
 #include "mesh/crumbs.h"
 #include "mesh/thin.h"
+#include "mesh/widen.h"
 
 #include <algorithm>
 #include <cmath>
@@ -219,7 +220,7 @@ unsigned threads_of(const Settings &settings) {
                                 : std::max(std::thread::hardware_concurrency(), 1u);
 }
 
-Made make_mesh(const ir::Scene &scene, const Settings &settings) {
+Made make_plain_mesh(const ir::Scene &scene, const Settings &settings) {
     Made made;
     const auto fail = [&](Failure failure) {
         made.failure = failure;
@@ -248,6 +249,48 @@ Made make_mesh(const ir::Scene &scene, const Settings &settings) {
     Failure failure = finish(made, field, settings, true, 2 * most_nodes, divided, progress);
     if (failure == Failure::Empty && settings.bounds) failure = Failure::Outside;
     if (failure != Failure::None) return fail(failure);
+    return made;
+}
+
+Made make_mesh(const ir::Scene &scene, const Settings &settings) {
+    Made made = make_plain_mesh(scene, settings);
+    if (made.octree.undecided.empty() ||
+        (made.failure != Failure::None && made.failure != Failure::Unseen))
+        return made;
+    const Field field(scene, settings.time, settings.bounds);
+    Progress progress;
+    progress.report = settings.progress;
+    progress.from = progress.to; // it was at its end
+    std::optional<Wider> wider =
+        draw_wider(scene, field, settings, made, made.octree.undecided, progress);
+    if (progress.cancelled) made.failure = Failure::Cancelled;
+    if (!progress.cancelled && wider && wider->certificate.certified()) {
+        made = std::move(wider->made);
+        made.octree.undecided.clear();
+    }
+    return made;
+}
+
+Made make_mesh_of(const Field &field, const ir::Box &box, const Settings &settings,
+                  Progress &progress) {
+    Made made;
+    made.box = box;
+    const auto fail = [&](Failure failure) {
+        made.failure = failure;
+        return std::move(made);
+    };
+    const std::optional<Lattice> lattice = make_lattice(box, settings.side, settings.extra, 0);
+    if (!lattice) return fail(Failure::TooFine);
+    OctreeSettings octree = octree_settings(settings);
+    octree.searches = false;
+    const double from = progress.from, to = progress.to;
+    progress.to = 0.5 * (from + to);
+    made.octree = make_octree(field, *lattice, octree, progress);
+    if (progress.cancelled) return fail(Failure::Cancelled);
+    if (made.octree.full) return fail(Failure::TooMany);
+    progress.phase(to);
+    std::vector<Cell> divided;
+    made.failure = finish(made, field, settings, true, most_nodes, divided, progress);
     return made;
 }
 

@@ -41,7 +41,9 @@ struct Made {
     Point place{}; // of Contradicted: about there
     Mesh mesh;
     double simplified = 0; // the mesh was simplified by this tolerance (simplify.h)
-    Octree octree;         // what the mesh was made of
+    double widened = 0; // … or is that of the solid grown by this, moved to the surface (widen.h);
+                        // negative: shrunk
+    Octree octree;      // what the mesh was made of
     Loops loops;
     std::vector<Point> roots;      // by crossing: where the surface crosses the edge,
     std::vector<float> root_slack; // … no farther from there than this
@@ -51,7 +53,14 @@ struct Made {
 // A box that holds the solid as it is cut off, or why there is none.
 Failure box_of(const ir::Scene &scene, const Settings &settings, ir::Box &box);
 
+// Where it has walls or gaps thinner than cells it is drawn wider (widen.h), if that is certified.
 Made make_mesh(const ir::Scene &scene, const Settings &settings);
+// As its cells show it.
+Made make_plain_mesh(const ir::Scene &scene, const Settings &settings);
+// Of a field whose solid lies in a box, by cells of `settings.side`; nothing is searched for that no
+// corner shows.
+Made make_mesh_of(const Field &field, const ir::Box &box, const Settings &settings,
+                  Progress &progress);
 
 // From an octree to the rest of what is made: divides its tangled cells, which are added to `divided`,
 // as long as it has no more nodes than `most`. The phases of the progress are up to where it ends.

@@ -70,6 +70,10 @@ class Halves {
     }
     // All triangles of higher number whose box touches that of triangle t.
     void above(std::uint32_t t, std::vector<std::uint32_t> &found) const {
+        touching(t, t + 1, found);
+    }
+    // … of other numbers, from `least` on.
+    void touching(std::uint32_t t, std::uint32_t least, std::vector<std::uint32_t> &found) const {
         found.clear();
         Point lo, hi;
         box_of(t, lo, hi);
@@ -84,7 +88,7 @@ class Halves {
             }
             for (std::uint32_t k = part.first; k < part.first + part.count; ++k) {
                 Point from, to;
-                if (order_[k] <= t) continue;
+                if (order_[k] < least || order_[k] == t) continue;
                 box_of(order_[k], from, to);
                 if (touch(from, to, lo, hi)) found.push_back(order_[k]);
             }
@@ -359,6 +363,33 @@ std::vector<std::uint32_t> strays_of(const Mesh &fine, const Mesh &mesh, double 
         });
     std::vector<std::uint32_t> all;
     for (const auto &some : found) all.insert(all.end(), some.begin(), some.end());
+    return all;
+}
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>>
+crossings_with(const Mesh &mesh, const std::vector<std::uint32_t> &asked, unsigned threads,
+               Progress &progress) {
+    using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+    const Halves halves(mesh);
+    std::vector<std::uint8_t> is_asked(mesh.triangles.size(), 0);
+    for (const std::uint32_t t : asked) is_asked[t] = 1;
+    std::vector<Pairs> found((asked.size() + checks_at_once - 1) / checks_at_once);
+    in_parallel(
+        found.size(), threads, progress, [] { return std::vector<std::uint32_t>(); },
+        [&](std::vector<std::uint32_t> &near, std::size_t number) {
+            const std::size_t end = std::min(asked.size(), (number + 1) * checks_at_once);
+            for (std::size_t k = number * checks_at_once; k < end; ++k) {
+                const std::uint32_t t = asked[k];
+                halves.touching(t, 0, near);
+                std::ranges::sort(near);
+                for (const std::uint32_t other : near)
+                    if ((other > t || !is_asked[other]) &&
+                        crossing_of(mesh.vertices, mesh.triangles[t], mesh.triangles[other]))
+                        found[number].push_back({t, other});
+            }
+        });
+    Pairs all;
+    for (const Pairs &some : found) all.insert(all.end(), some.begin(), some.end());
     return all;
 }
 

@@ -17,6 +17,10 @@ bool is_like(const Mesh &fine, const Mesh &mesh);
 
 // Whether triangles have more in common than the vertices and edges that they share.
 bool crosses_itself(const Mesh &mesh);
+// Pairs of triangles of which that is so, with one of those asked.
+std::vector<std::pair<std::uint32_t, std::uint32_t>>
+crossings_with(const Mesh &mesh, const std::vector<std::uint32_t> &asked, unsigned threads,
+               Progress &progress);
 // Pairs of triangles of different owners of which that is so.
 std::vector<std::pair<std::uint32_t, std::uint32_t>>
 crossings_between(const Mesh &mesh, const std::vector<std::uint32_t> &owner, unsigned threads,

@@ -23,7 +23,7 @@ Certified certified(const std::string &text, mesh::Settings settings) {
         driver::compile_text("mesh.sdf", text, FATHOM_SOURCE_DIR "/examples/parts", {});
     REQUIRE(c.good());
     Certified result;
-    result.made = mesh::make_mesh(c.scene, settings);
+    result.made = mesh::make_plain_mesh(c.scene, settings);
     REQUIRE(result.made.failure == mesh::Failure::None);
     mesh::Progress progress;
     result.certificate = mesh::certify(c.scene, settings, result.made, progress);
@@ -162,15 +162,21 @@ TEST_CASE("cells that a certificate leaves undecided are divided until all is de
 
 TEST_CASE("mending has an end, and what is undecided then is listed") {
     mesh::Settings settings = cells(40);
-    const mesh::Mended result = mended("sphere(1) | box([3, 3, 0.0001]).translate(z: 2)", settings);
+    const mesh::Mended result = mended("sphere(1) | box([1, 1, 0.0001])"
+                                       ".repeat([0, 0, 0.01], count: [1, 1, 60]).translate(z: 2)",
+                                       settings);
     CHECK_FALSE(result.certificate.certified());
     CHECK(result.certificate.undecided.size() > 100);
 }
 
 TEST_CASE("mending ends where no round gains, and alike however many threads there are") {
-    // A plate far thinner than the finest cell: it is divided as deep as the work allows.
-    const driver::Compilation c = driver::compile_text(
-        "mesh.sdf", "sphere(1) | box([0.1, 0.1, 0.00001]).translate(z: 2)", "", {});
+    // Plates far thinner than the finest cell, too near to each other to be drawn wider: they are divided
+    // as deep as the work allows.
+    const driver::Compilation c =
+        driver::compile_text("mesh.sdf",
+                             "sphere(1) | box([0.32, 0.32, 0.00001])"
+                             ".repeat([0, 0, 0.01], count: [1, 1, 30]).translate(z: 2)",
+                             "", {});
     REQUIRE(c.good());
     std::vector<mesh::Mended> all;
     for (const unsigned threads : {1u, 3u, 16u}) {

@@ -348,7 +348,7 @@ TEST_CASE(
         }
     CHECK(thin > 10);
     const mesh::Made shell =
-        mesh::make_mesh(flush_scene("sphere(2) - sphere(1.98)"), fine_cells(16));
+        mesh::make_plain_mesh(flush_scene("sphere(2) - sphere(1.98)"), fine_cells(16));
     CHECK(shell.octree.undecided.size() > 400);
     // One that the finest cells show is drawn, and whole.
     const mesh::Made shown = mesh::make_mesh(flush_scene("box([4, 4, 0.06])"), fine_cells(16));

@@ -1,0 +1,341 @@
+#include "mesh/widen.h"
+
+#include "mesh/exact.h"
+#include "mesh/mesh.h"
+#include "mesh/qef.h"
+#include "mesh/simplify_checks.h"
+#include "mesh/thin.h"
+#include "mesh/walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::mesh {
+namespace {
+
+constexpr double shows_walls = 1.8;   // cells across a wall that is seen whole at any angle
+constexpr double kept_off = 1.0 / 64; // of a wall's thickness: where moved vertices end before it
+constexpr int most_steps = 16;        // of Newton's method
+constexpr std::size_t few_cells = 64; // with thin walls: they are mended by themselves,
+constexpr std::size_t few_share = 32; // … as where so many times more are crossed
+constexpr double most_nodes_of_wider = 8e6; // of an octree of smaller cells, about
+constexpr std::size_t points_at_once = 1024;
+
+// Moves points outside of the solid along the field's slope to where it is `level`, and never
+// beyond its surface.
+struct Mover {
+    explicit Mover(const Field &field) : evaluator(field) {}
+    Evaluator evaluator;
+    Points points;
+    std::array<std::vector<float>, 4> slope;
+    std::vector<float> values;
+    std::vector<std::size_t> going;
+    std::vector<double> share; // of Newton's step
+
+    void move(std::span<Point> at, float level, float sign) {
+        const cpu::ShortTape &tape = *evaluator.field.whole;
+        share.assign(at.size(), 1);
+        going.clear();
+        for (std::size_t k = 0; k < at.size(); ++k) going.push_back(k);
+        std::vector<Point> next(at.size());
+        for (int step = 0; step < most_steps && !going.empty(); ++step) {
+            points.clear();
+            for (const std::size_t k : going) points.add(at[k]);
+            gradients_at(evaluator, tape, points, slope);
+            std::vector<std::size_t> moved;
+            points.clear();
+            for (std::size_t n = 0; n < going.size(); ++n) {
+                const std::size_t k = going[n];
+                double squares = 0;
+                for (std::size_t i = 0; i < 3; ++i)
+                    squares += double(slope[1 + i][n]) * slope[1 + i][n];
+                const double above = double(sign) * slope[0][n] - level;
+                if (!(squares > 1e-6) || !(std::fabs(above) > 0.25 * level)) continue;
+                for (std::size_t i = 0; i < 3; ++i)
+                    next[k][i] = static_cast<float>(at[k][i] - share[k] * sign * above *
+                                                                   slope[1 + i][n] / squares);
+                moved.push_back(k);
+                points.add(next[k]);
+            }
+            values_at(evaluator, tape, points, values);
+            for (std::size_t n = 0; n < moved.size(); ++n) {
+                const std::size_t k = moved[n];
+                if (sign * values[n] > 0)
+                    at[k] = next[k];
+                else
+                    share[k] *= 0.5;
+            }
+            going = std::move(moved);
+        }
+    }
+
+    // How far from each point the field has another sign, by looks along its slope; none: not seen.
+    void look_beyond(std::span<const Point> at, float level, float sign,
+                     std::vector<std::optional<float>> &far) {
+        const cpu::ShortTape &tape = *evaluator.field.whole;
+        constexpr std::array<float, 4> looks{2, 4, 16, 32}; // times the level
+        far.assign(at.size(), {});
+        points.clear();
+        for (const Point &p : at) points.add(p);
+        gradients_at(evaluator, tape, points, slope);
+        points.clear();
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            const double rate = std::hypot(slope[1][k], slope[2][k], slope[3][k]);
+            for (const float look : looks) {
+                Point p = at[k];
+                for (std::size_t i = 0; rate > 1e-3 && i < 3; ++i)
+                    p[i] -= static_cast<float>(sign * look * level * slope[1 + i][k] / rate);
+                points.add(p);
+            }
+        }
+        values_at(evaluator, tape, points, values);
+        for (std::size_t k = 0; k < at.size(); ++k)
+            for (std::size_t n = looks.size(); n-- > 0;)
+                if (const std::size_t look = looks.size() * k + n;
+                    (values[look] <= 0) != (slope[0][k] <= 0))
+                    far[k] =
+                        static_cast<float>(distance(real(points[look]), real(at[k])) * (1 + 1e-6));
+    }
+};
+
+// Where the field changes its sign near vertices that were moved, as the roots of a mesh.
+void find_roots(const Field &field, float level, float sign, unsigned threads, Made &made,
+                Progress &progress) {
+    const std::vector<Point> &at = made.mesh.vertices;
+    std::vector<std::vector<std::optional<float>>> far((at.size() + points_at_once - 1) /
+                                                       points_at_once);
+    in_parallel(
+        far.size(), threads, progress, [&] { return Mover(field); },
+        [&](Mover &mover, std::size_t number) {
+            const std::size_t first = number * points_at_once;
+            mover.look_beyond(
+                std::span(at).subspan(first, std::min(points_at_once, at.size() - first)), level,
+                sign, far[number]);
+        });
+    for (std::size_t k = 0; k < at.size(); ++k)
+        if (const auto &slack = far[k / points_at_once][k % points_at_once]) {
+            made.roots.push_back(at[k]);
+            made.root_slack.push_back(*slack);
+        }
+}
+
+// Places at the surface.
+std::vector<Point> moved(const Field &field, std::vector<Point> at, float level, float sign,
+                         unsigned threads, Progress &progress) {
+    in_parallel((at.size() + points_at_once - 1) / points_at_once, threads, progress,
+                [&] { return Mover(field); },
+                [&](Mover &mover, std::size_t number) {
+                    const std::size_t first = number * points_at_once;
+                    mover.move(
+                        std::span(at).subspan(first, std::min(points_at_once, at.size() - first)),
+                        level, sign);
+                });
+    return at;
+}
+
+// Where hollow edges and corners of the surface are, near vertices of patches that hold them: where
+// the planes meet that the surface has at the patch's crossings, when these are moved to it. (To
+// others vertices come by themselves.)
+void find_edges(const Field &field, const Made &drawn, float level, float sign, unsigned threads,
+                std::vector<Point> &at, Progress &progress) {
+    constexpr double sharp = 0.9; // of two normals: the cosine below which an edge is between them
+    const std::vector<Point> roots = moved(field, drawn.roots, level, sign, threads, progress);
+    if (progress.cancelled) return;
+    Evaluator evaluator(field);
+    Points points;
+    for (const Point &p : roots) points.add(p);
+    std::array<std::vector<float>, 4> slope;
+    gradients_at(evaluator, *field.whole, points, slope);
+    const double reach = 0.1 * drawn.octree.lattice.side(drawn.octree.lattice.level);
+    std::vector<std::uint32_t> patches;
+    std::vector<Point> found;
+    std::vector<Plane> planes;
+    for (std::uint32_t p = 0; p < drawn.loops.patches.size(); ++p) {
+        const Patch &patch = drawn.loops.patches[p];
+        planes.clear();
+        Real3 lo{unbounded, unbounded, unbounded}, hi{-unbounded, -unbounded, -unbounded};
+        bool hollow = false;
+        for (std::uint32_t k = patch.first; k < patch.first + patch.count; ++k) {
+            const auto c = static_cast<std::size_t>(drawn.loops.members[k]);
+            Plane plane{real(roots[c]), {slope[1][c], slope[2][c], slope[3][c]}};
+            const double length = std::sqrt(inner(plane.normal, plane.normal));
+            if (!(length > 1e-3) || !(std::fabs(slope[0][c]) < 8 * level)) continue;
+            for (std::size_t i = 0; i < 3; ++i) {
+                plane.normal[i] /= length;
+                lo[i] = std::min(lo[i], plane.point[i] - reach);
+                hi[i] = std::max(hi[i], plane.point[i] + reach);
+            }
+            for (const Plane &other : planes)
+                hollow =
+                    hollow || (inner(other.normal, plane.normal) < sharp &&
+                               inner(plane.normal, along(other.point, plane.point, -1)) > reach);
+            planes.push_back(plane);
+        }
+        if (!hollow) continue;
+        // Along an edge the vertex stays where it was.
+        const Real3 before = real(drawn.mesh.vertices[p]);
+        for (Plane &plane : planes)
+            plane.point =
+                along(before, plane.normal, inner(plane.normal, along(plane.point, before, -1)));
+        const Vector x = meeting_point(planes, lo, hi);
+        patches.push_back(p);
+        found.push_back(
+            {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])});
+    }
+    points.clear();
+    for (const Point &p : found) points.add(p);
+    std::vector<float> values;
+    values_at(evaluator, *field.whole, points, values);
+    const std::vector<Point> near = moved(field, found, level, sign, threads, progress);
+    for (std::size_t k = 0; k < found.size(); ++k)
+        if (sign * values[k] > 0) at[patches[k]] = near[k];
+}
+
+// Moves vertices as far as triangles keep areas and do not cross. `from`: where none cross. `all`: it
+// fails where one cannot be moved at all.
+bool move_apart(Mesh &mesh, const std::vector<Point> &from, bool all, unsigned threads,
+                Progress &progress) {
+    constexpr std::array<double, 5> shares{1, 0.98, 0.85, 0.5, 0};
+    const std::vector<Point> to = mesh.vertices;
+    std::vector<std::uint8_t> back(from.size(), 0);
+    std::vector<std::uint32_t> asked(mesh.triangles.size()); // that may cross others
+    for (std::uint32_t t = 0; t < asked.size(); ++t) asked[t] = t;
+    for (;;) { // each round moves some vertex back
+        std::vector<std::uint32_t> bad;
+        for (const std::uint32_t t : asked) {
+            const auto &[a, b, c] = mesh.triangles[t];
+            if (is_flat(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c])) bad.push_back(t);
+        }
+        const bool flat = !bad.empty();
+        if (!flat)
+            for (const auto &[s, t] : crossings_with(mesh, asked, threads, progress))
+                bad.push_back(s), bad.push_back(t);
+        if (progress.cancelled) return false;
+        if (bad.empty()) return true;
+        std::vector<std::uint8_t> moves(from.size(), 0);
+        bool some = false;
+        for (const std::uint32_t t : bad)
+            for (const std::uint32_t v : mesh.triangles[t]) {
+                if (moves[v] || back[v] + 1u == shares.size()) continue;
+                moves[v] = 1, some = true;
+                const double share = shares[++back[v]];
+                if (share == 0 && all) return false;
+                const Real3 here =
+                    along(real(from[v]), fathom::mesh::minus(real(to[v]), real(from[v])), share);
+                for (std::size_t i = 0; share > 0 && i < 3; ++i)
+                    mesh.vertices[v][i] = static_cast<float>(here[i]);
+                if (share == 0) mesh.vertices[v] = from[v];
+            }
+        if (!some) return false;
+        std::vector<std::uint32_t> next;
+        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+            if (const auto &[a, b, c] = mesh.triangles[t]; moves[a] || moves[b] || moves[c])
+                next.push_back(t);
+        if (flat) { // the others have not been asked yet
+            next.insert(next.end(), asked.begin(), asked.end());
+            std::ranges::sort(next);
+            next.erase(std::unique(next.begin(), next.end()), next.end());
+        }
+        asked = std::move(next);
+    }
+}
+
+// Whether most of what a mesh does not show is walls or gaps, by samples: about how thick they are.
+struct ThinWalls {
+    double thickness = 0; // 0: no
+    bool gaps = false;    // it is gaps
+};
+
+ThinWalls thin_walls_of(const Field &field, const Settings &settings, const Made &made,
+                        std::span<const Cell> cells, Progress &progress) {
+    std::vector<double> walls, gaps;
+    for (const Thin &thin :
+         thin_in(field, made.octree.lattice, cells, threads_of(settings), progress))
+        if (thin.thickness > 0) (thin.gap ? gaps : walls).push_back(thin.thickness);
+    const bool more_gaps = gaps.size() > walls.size();
+    std::vector<double> &thick = more_gaps ? gaps : walls;
+    if (thick.empty() || 3 * thick.size() < 2 * std::min(cells.size(), most_places)) return {};
+    std::ranges::sort(thick);
+    return {thick[thick.size() / 4], more_gaps};
+}
+
+// The same octree with another mesh. `times`: cells are so many times smaller than the drawing cells.
+// None: there is none, or it was cancelled.
+std::optional<Made> widened(const ir::Scene &scene, const Field &field, const Settings &settings,
+                            const Made &made, const ThinWalls &walls, double times,
+                            Progress &progress) {
+    const Lattice &lattice = made.octree.lattice;
+    Settings finer = settings;
+    finer.side = lattice.side(lattice.level) / times;
+    const double by = 0.5 * std::max(shows_walls * finer.side - walls.thickness, 0.0);
+    const float sign = walls.gaps ? -1.0f : 1.0f;
+    ir::Box box = made.box;
+    if (!walls.gaps) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            box.lo[i] -= 1.01 * by, box.hi[i] += 1.01 * by;
+            if (!settings.bounds) continue;
+            box.lo[i] = std::max(box.lo[i], settings.bounds->lo[i]);
+            box.hi[i] = std::min(box.hi[i], settings.bounds->hi[i]);
+        }
+    }
+    const Field wide(scene, settings.time, walls.gaps ? settings.bounds : box,
+                     sign * static_cast<float>(by));
+    const double from = progress.from, to = progress.to;
+    progress.to = from + 0.4 * (to - from);
+    Made drawn = make_mesh_of(wide, box, finer, progress);
+    if (drawn.failure != Failure::None) return std::nullopt;
+    progress.phase(from + 0.7 * (to - from));
+    const auto level = static_cast<float>(kept_off * walls.thickness);
+    const unsigned threads = threads_of(settings);
+    std::vector<Point> at = moved(field, drawn.mesh.vertices, level, sign, threads, progress);
+    if (!progress.cancelled) find_edges(field, drawn, level, sign, threads, at, progress);
+    progress.phase(to);
+    std::swap(at, drawn.mesh.vertices);
+    const bool all = by > 0.5 * lattice.side(lattice.level); // else nothing would be proved there
+    if (progress.cancelled || !move_apart(drawn.mesh, at, all, threads, progress))
+        return std::nullopt;
+    Made result = made;
+    result.failure = Failure::None;
+    result.mesh = std::move(drawn.mesh);
+    result.widened = sign * by;
+    find_roots(field, level, sign, threads, result, progress);
+    if (progress.cancelled) return std::nullopt;
+    return result;
+}
+
+} // namespace
+
+Doubt doubt_of(const Made &made, const Certificate &certificate) {
+    return {volume_in_doubt(certificate, made.octree.lattice), certificate.unproved.size()};
+}
+
+std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
+                                const Settings &settings, const Made &made,
+                                std::span<const Cell> cells, Progress &progress) {
+    std::size_t crossed = 0;
+    for (const Node &node : made.octree.nodes) crossed += node.children == none && node.crossed();
+    if (cells.size() < few_cells || few_share * cells.size() < crossed) return std::nullopt;
+    const ThinWalls walls = thin_walls_of(field, settings, made, cells, progress);
+    if (!(walls.thickness > 0)) return std::nullopt;
+    std::optional<Wider> best;
+    const double from = progress.from, to = progress.to;
+    for (const double times : {1.0, 2.0, 4.0}) {
+        if (times > 1 && times * times * double(made.octree.nodes.size()) > most_nodes_of_wider)
+            break;
+        progress.from = from, progress.to = 0.5 * (from + to);
+        std::optional<Made> wide = widened(scene, field, settings, made, walls, times, progress);
+        if (progress.cancelled) break;
+        if (!wide) continue;
+        progress.phase(to);
+        Wider wider{std::move(*wide), {}};
+        wider.certificate = certify(field, settings, wider.made, nullptr, progress);
+        if (progress.cancelled) break;
+        if (!best ||
+            doubt_of(wider.made, wider.certificate) < doubt_of(best->made, best->certificate))
+            best = std::move(wider);
+        if (best->certificate.certified()) break;
+    }
+    return best;
+}
+
+} // namespace fathom::mesh

@@ -1,0 +1,33 @@
+// Meshes of walls and gaps thinner than cells: no corner of a cell lies in such a wall, but the solid
+// grown by most of a cell shows it whole, and the vertices of that one's mesh are moved to the surface
+// (docs/meshes.md, 12).
+#pragma once
+
+#include "mesh/certify.h"
+
+#include <span>
+
+namespace fathom::mesh {
+
+// How much of a mesh is in doubt.
+struct Doubt {
+    std::uint64_t volume = 0; // of cells, in those of the finest level
+    std::size_t places = 0;   // of the mesh
+    friend auto operator<=>(const Doubt &, const Doubt &) = default;
+};
+Doubt doubt_of(const Made &made, const Certificate &certificate);
+
+struct Wider {
+    Made
+        made; // the same octree, with another mesh: no vertex of it belongs to a cell by its number
+    Certificate certificate; // of it
+};
+
+// Where many cells are undecided, and most of what is in them are walls, or gaps, by samples: the mesh
+// that is drawn so, by cells that are up to four times smaller if need be; the first that is certified,
+// else the one with least in doubt. None: there are no such walls, or no such mesh was made.
+std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
+                                const Settings &settings, const Made &made,
+                                std::span<const Cell> cells, Progress &progress);
+
+} // namespace fathom::mesh
