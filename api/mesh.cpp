@@ -80,6 +80,7 @@ MeshCertificate certificate_of(const fathom::mesh::Certificate &found) {
     made.largest_area = found.area.hi;
     made.open_places = found.open_places;
     made.open_place = found.open_place;
+    made.looked_for_area = found.looked_for_area;
     made.mesh_volume = found.mesh_volume;
     made.mesh_area = found.mesh_area;
     made.rests_on = rests_on(found.used_bound);

@@ -53,7 +53,9 @@ Json json_of(const v1::Mesh &mesh) {
         json["area"] = {c->least_area,
                         std::isfinite(c->largest_area) ? Json(c->largest_area) : Json()};
         if (c->open_places > 0)
-            json["area_open"] = {{"boxes", c->open_places}, {"near", c->open_place}};
+            json["area_open"] = {{"boxes", c->open_places},
+                                 {"near", c->open_place},
+                                 {"looked_for", c->looked_for_area}};
     }
     json["mesh_volume"] = of.volume;
     json["mesh_area"] = of.area;
@@ -81,7 +83,11 @@ void say_certificate(const v1::Mesh &mesh, const std::string &what, Terminal &te
     const std::string area =
         std::isfinite(c.largest_area)
             ? fmt::format("between {:.6g} and {:.6g}", c.least_area, c.largest_area)
-            : fmt::format("above {:.6g} (`fathom measure` looks closer)", c.least_area);
+            : fmt::format("above {:.6g} ({})", c.least_area,
+                          c.looked_for_area
+                              ? "`fathom measure` looks closer"
+                              : "an upper end was not looked for, since the field is long: "
+                                "`fathom measure` looks for it");
     const std::string volume =
         fmt::format("the solid's volume lies between {:.6g} and {:.6g}, its area {}",
                     c.least_volume, c.largest_volume, area);

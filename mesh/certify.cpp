@@ -152,6 +152,7 @@ void enclose_measures(const ir::Scene &scene, const Settings &settings, const Ma
     certificate.area = of.area;
     certificate.open_places = of.open_places;
     certificate.open_place = of.open_place;
+    certificate.looked_for_area = of.looked;
     certificate.used_bound = certificate.used_bound || of.used_bound;
 }
 

@@ -35,6 +35,7 @@ struct Certificate {
     Enclosure area{0, std::numeric_limits<double>::infinity()};
     std::size_t open_places = 0;
     Real3 open_place{};
+    bool looked_for_area = true; // for its upper end; else that would take too much
     double mesh_volume = 0, mesh_area = 0;
     // Whether the proofs used the proved bound, besides intervals.
     bool used_bound = false;

@@ -12,6 +12,7 @@ struct Measures {
     Enclosure area;              // without an upper end where there are
     std::size_t open_places = 0; // … boxes of which none is known,
     Real3 open_place{};          // the middle of one of them
+    bool looked = true;          // for an upper end of the area; else it would take too much
     std::array<Enclosure, 3> center;
     std::array<Enclosure, 3> least, greatest; // the ends of the solid's box
     bool used_bound = false;                  // the proved bound, besides intervals

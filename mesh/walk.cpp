@@ -266,6 +266,7 @@ CellSums sums_of_open(const Field &field, const std::vector<OpenBlock> &open, Wa
         });
     CellSums sums;
     for (const CellSums &some : found) sums.add(some);
+    sums.looked = walk.looks || open.empty();
     return sums;
 }
 
@@ -277,6 +278,7 @@ Measures measures_of(const CellSums &sums, const Real3 &middle) {
                      sums.open_places > 0 ? unbounded : sums.most_area * (1 + rounding_share)};
     measures.open_places = sums.open_places;
     measures.open_place = sums.open_place;
+    measures.looked = sums.looked;
     for (std::size_t i = 0; i < 3; ++i) {
         const double slack =
             rounding_share * (sums.sizes + std::fabs(middle[i]) * measures.volume.hi);

@@ -24,6 +24,7 @@ struct CellSums {
     double least_area = 0, most_area = 0;
     std::size_t open_places = 0; // boxes of which no greatest area is known, and the first of them
     Real3 open_place{};
+    bool looked = true; // at slopes: else all that is open is an open place
     Real3 outer_lo{unbounded, unbounded, unbounded}, outer_hi{-unbounded, -unbounded, -unbounded};
     Real3 known_lo = outer_lo, known_hi = outer_hi; // of points that are in the solid
 
@@ -80,6 +81,7 @@ struct CellSums {
         least_area += other.least_area, most_area += other.most_area;
         if (open_places == 0) open_place = other.open_place;
         open_places += other.open_places;
+        looked = looked && other.looked;
         for (std::size_t i = 0; i < 3; ++i) {
             moment[i] += other.moment[i];
             least_moment[i] += other.least_moment[i];

@@ -82,6 +82,9 @@ struct MeshCertificate {
     double least_area = 0, largest_area = 0;
     std::size_t open_places = 0;
     std::array<double, 3> open_place{};
+    /** Whether `largest_area` was looked for: not where the field's operations in all open cells are
+     *  too many. `measure` looks for it all the same. */
+    bool looked_for_area = true;
     double mesh_volume = 0, mesh_area = 0; /**< of the triangles */
     /** `intervals`, `single-precision`; `bound` where the proved bound left cells out. */
     std::vector<std::string> rests_on;

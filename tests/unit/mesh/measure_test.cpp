@@ -1,5 +1,6 @@
 // Measures: what is known of solids lies in the enclosures, and clearances are those of geometry.
 #include "driver/compile.h"
+#include "mesh/certify.h"
 #include "mesh/clearance.h"
 #include "mesh/measure_flat.h"
 #include "mesh/slopes.h"
@@ -476,5 +477,22 @@ TEST_CASE("the area and the border of drawings that are known") {
         CHECK(of.perimeter.hi - of.perimeter.lo < 0.02 * k.border);
         CHECK(of.open_places == 0);
         for (std::size_t i = 0; i < 2; ++i) CHECK(holds(of.center[i], k.center[i]));
+    }
+}
+
+TEST_CASE("a certificate says whether an upper end of the area was looked for") {
+    const ir::Scene scene = scene_of("sphere(1)");
+    for (const int resolution : {24, 400}) { // of the second, all cells have too many kernels
+        mesh::Settings settings;
+        settings.resolution = resolution;
+        const mesh::Made made = mesh::make_mesh(scene, settings);
+        REQUIRE(made.failure == mesh::Failure::None);
+        mesh::Progress progress;
+        mesh::Certificate certificate;
+        certificate.largest_volume = 8;
+        enclose_measures(scene, settings, made, progress, certificate);
+        CHECK(certificate.looked_for_area == (resolution == 24));
+        CHECK(std::isfinite(certificate.area.hi) == certificate.looked_for_area);
+        CHECK((certificate.open_places == 0) == certificate.looked_for_area);
     }
 }
