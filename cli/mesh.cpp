@@ -86,7 +86,7 @@ void say_certificate(const v1::Mesh &mesh, const std::string &what, Terminal &te
             : fmt::format("above {:.6g} ({})", c.least_area,
                           c.looked_for_area
                               ? "`fathom measure` looks closer"
-                              : "an upper end was not looked for, since the field is long: "
+                              : "an upper end was not looked for, which would take too much: "
                                 "`fathom measure` looks for it");
     const std::string volume =
         fmt::format("the solid's volume lies between {:.6g} and {:.6g}, its area {}",
