@@ -2,7 +2,9 @@
 
 #include "ir/passes/inline.h"
 #include "ir/passes/walk.h"
+#include "proof/continuity.h"
 #include "proof/inner_vectors.h"
+#include "proof/rescaled.h"
 
 #include <algorithm>
 #include <cmath>
@@ -188,15 +190,98 @@ class Parts {
     // With `sampled` as a slope that would be right for it, not one that was seen.
     std::optional<FieldBound> through(NodeId id, const Inner &inner, double slope) {
         if (!std::isfinite(slope) || context_.work.spent()) return {};
-        FieldBound out = with_part_of_work(2, [&] {
-            const Image image = image_of(context_, ranges_, vector_of(inner), slope, domain_);
-            return bound_field(context_, ranges_, seen_from(graph_, id, inner), image.domain(),
-                               budget_);
-        });
+        const Image image = image_of(context_, ranges_, vector_of(inner), slope, domain_);
+        NodeId field = seen_from(graph_, id, inner);
+        if (const auto scaled = scaled_apart(field, inner)) {
+            field = scaled->field;
+            slope = slope_of(scaled->rest);
+        }
+        FieldBound out = with_part_of_work(
+            2, [&] { return bound_field(context_, ranges_, field, image.domain(), budget_); });
         if (!std::isfinite(out.lipschitz)) return {};
         out.lipschitz = up(times(slope, out.lipschitz), 4);
         out.sampled = times(slope, out.sampled);
         return out;
+    }
+
+    // Where a number k > 0 that stands still is a factor of all components: the vector without it, and
+    // k times the field, where k meets its inverse in that. It is as steep as the field is by k v.
+    struct Scaled {
+        Inner rest;
+        NodeId field;
+    };
+    std::optional<Scaled> scaled_apart(NodeId field, const Inner &inner) {
+        if (inner.distance) return {};
+        Inner by_component = inner;
+        NodeId some;
+        for (NodeId &part : by_component.components) {
+            if (part && graph_[part].op == Op::Swizzle)
+                part = component_of(graph_, graph_.arg(part, 0),
+                                    ir::swizzle_component(graph_[part].payload, 0));
+            if (part) some = part;
+        }
+        for (const Factor &factor : still_factors(some)) {
+            Scaled out{by_component, {}};
+            bool all = true;
+            for (NodeId &part : out.rest.components)
+                if (part && all) {
+                    const auto rest = without_factor(part, factor);
+                    all = rest.has_value();
+                    if (all) part = *rest;
+                }
+            if (!all) continue;
+            const Interval range = range_of(context_, ranges_, factor.number)[0];
+            if (!(range.lo > 0) || !range.finite()) continue;
+            RescaledNodes known;
+            const auto met = rescaled(graph_, factor, field, known, context_.work);
+            if (!met) continue;
+            out.field = met->value;
+            return out;
+        }
+        return {};
+    }
+    bool is_still(NodeId id) const {
+        return !graph_.reads(id).point && !graph_.reads(id).free_vars;
+    }
+    std::vector<Factor> still_factors(NodeId part) const {
+        while (graph_[part].op == Op::Add || graph_[part].op == Op::Sub)
+            part = graph_.arg(part, is_still(graph_.arg(part, 0)) ? 1 : 0);
+        std::vector<Factor> out = factors_of(graph_, part);
+        std::erase_if(out, [&](const Factor &one) { return !is_still(one.number); });
+        return out;
+    }
+    // What is as steep as the component over the factor, by each coordinate.
+    std::optional<NodeId> without_factor(NodeId id, const Factor &factor) {
+        const ir::Node node = graph_[id];
+        if (node.op == Op::Add || node.op == Op::Sub) {
+            const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
+            if (is_still(b)) return without_factor(a, factor);
+            const auto of_b = without_factor(b, factor);
+            if (!of_b) return {};
+            if (is_still(a)) return node.op == Op::Sub ? graph_.neg(*of_b) : *of_b;
+            const auto of_a = without_factor(a, factor);
+            if (!of_a) return {};
+            return graph_.make(node.op, {*of_a, *of_b});
+        }
+        if (node.op == Op::Mul)
+            for (int i = 0; i < 2; ++i) {
+                const NodeId other = graph_.arg(id, 1 - i);
+                if (!factor.divides && graph_.arg(id, i) == factor.number) return other;
+                if (const auto rest = is_still(graph_.arg(id, i))
+                                          ? std::nullopt
+                                          : without_factor(graph_.arg(id, i), factor))
+                    return graph_.mul(*rest, other);
+            }
+        if (node.op == Op::Div) {
+            const NodeId above = graph_.arg(id, 0), below = graph_.arg(id, 1);
+            if (factor.divides && below == factor.number) return above;
+            if (const auto rest = without_factor(above, factor))
+                return graph_.make(Op::Div, {*rest, below});
+        }
+        if (node.op == Op::Neg)
+            if (const auto rest = without_factor(graph_.arg(id, 0), factor))
+                return graph_.neg(*rest);
+        return {};
     }
 
     FieldBound bound_of_itself(NodeId id) {

@@ -93,6 +93,7 @@ struct Flattener {
     void find_around(Scope &scope, NodeId id, Instruction &out);
     void find_parallel(Scope &scope, NodeId id, Instruction &out);
     void find_radial(Scope &scope, NodeId id, Instruction &out);
+    void find_ellipsoid(Scope &scope, NodeId id, Instruction &out);
     void find_univariate(Scope &scope, NodeId id, Instruction &out);
     // A product or quotient by numbers whose inverses meet them in the rest (rescaled.h).
     std::optional<NodeId> without_factors(Scope &scope, NodeId id);

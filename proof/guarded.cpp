@@ -1,6 +1,7 @@
 #include "proof/guarded.h"
 
 #include "ir/passes/walk.h"
+#include "proof/ellipsoids.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,6 +75,22 @@ NodeId with_bounds(Graph &graph, NodeId root, const std::vector<Order> &orders, 
     return kept.empty() ? root : ir::substitute(graph, root, kept);
 }
 
+// An ellipsoid to first order where its k0 is at least 1.
+std::optional<NodeId> outside(Graph &graph, NodeId id, const std::vector<Order> &orders) {
+    const Op op = graph[id].op;
+    if ((op != Op::Div && op != Op::Mul) || graph[id].type != ir::Type::Float) return {};
+    const auto is_size = [&](const Order &order) {
+        return order.at_least && graph[order.number].op == Op::Length &&
+               graph.as_number(order.limit) == 1.0;
+    };
+    if (std::ranges::none_of(orders, is_size)) return {};
+    const auto found = ellipsoid(graph, id);
+    if (!found) return {};
+    for (const Order &order : orders)
+        if (is_size(order) && order.number == found->k0) return kept_outside(graph, *found);
+    return {};
+}
+
 } // namespace
 
 bool is_never_negative(const Graph &graph, NodeId id, int depth) {
@@ -115,6 +132,10 @@ NodeId on_its_side(Graph &graph, NodeId condition, bool holds, NodeId arm, Work 
         work.take(1);
         if (seen.size() > most_nodes) return arm;
         const ir::Node node = graph[id];
+        if (const auto kept_node = outside(graph, id, orders)) {
+            kept[id] = *kept_node;
+            continue;
+        }
         const int edged = edged_argument(node.op);
         std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
         todo.insert(todo.end(), args.begin(), args.end());

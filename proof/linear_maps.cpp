@@ -370,8 +370,10 @@ std::optional<LinearMap> turned(Graph &graph, NodeId vector,
         std::vector<NodeId> rests;
         reader.shallow = shallow;
         for (int i = 0; i < n && !reader.failed; ++i) {
-            const NodeId part =
-                shallow && by_component(graph[vector].op) ? NodeId() : reader.part(vector, i);
+            const NodeId part = n == 1 ? vector
+                                : shallow && by_component(graph[vector].op)
+                                    ? NodeId()
+                                    : reader.part(vector, i);
             reader.failed = reader.failed || !part;
             if (reader.failed) continue;
             const LinearSum sum = reader.read(part);
@@ -394,6 +396,29 @@ std::optional<LinearMap> turned(Graph &graph, NodeId vector,
     if (found && found->turning) return found;
     const auto scalars = turned_scalars(graph, vector, varies);
     return scalars ? scalars : found;
+}
+
+std::optional<LinearMap> turned_part(Graph &graph, NodeId scalar) {
+    constexpr ir::OpSet sums{Op::Add, Op::Sub}, waves{Op::Sin, Op::Cos};
+    if (graph[scalar].type != ir::Type::Float || !sums[graph[scalar].op]) return {};
+    const auto unsigned_of = [&](NodeId id) {
+        while (graph[id].op == Op::Neg) id = graph.arg(id, 0);
+        return id;
+    };
+    std::array<NodeId, 2> wave, angle, of;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const NodeId term = unsigned_of(graph.arg(scalar, int(i)));
+        if (graph[term].op != Op::Mul) return {};
+        const NodeId first = unsigned_of(graph.arg(term, 0)),
+                     second = unsigned_of(graph.arg(term, 1));
+        const bool is_first = waves[graph[first].op];
+        wave[i] = is_first ? first : second, of[i] = is_first ? second : first;
+        if (!waves[graph[wave[i]].op]) return {};
+        angle[i] = unsigned_of(graph.arg(wave[i], 0));
+    }
+    if (graph[wave[0]].op == graph[wave[1]].op || angle[0] != angle[1]) return {};
+    return LinearMap{
+        graph.make(Op::Make, ir::Type::Vec2, {of[0], of[1]}), 1, false, {wave[0], wave[1]}};
 }
 
 std::optional<double> matrix_norm(Graph &graph, NodeId matrix) {

@@ -35,6 +35,10 @@ std::optional<LinearMap> turned(ir::Graph &graph, ir::NodeId vector,
                                 const std::function<bool(ir::NodeId)> &varies,
                                 const std::unordered_set<ir::NodeId> &turned);
 
+// A scalar that is one component of a vector turned: c x + s y, or c x - s y, with c and s the cosine
+// and the sine of one angle. Nothing is looked into.
+std::optional<LinearMap> turned_part(ir::Graph &graph, ir::NodeId scalar);
+
 // The same for a matrix alone: a bound of its spectral norm, from M M^T.
 std::optional<double> matrix_norm(ir::Graph &graph, ir::NodeId matrix);
 

@@ -177,6 +177,7 @@ class Machine {
     void hold_around(const Instruction &instruction);
     void hold_between(const Instruction &instruction);
     void hold_along(const Instruction &instruction);
+    void hold_ellipsoid(const Instruction &instruction);
     void hold_univariate(const Instruction &instruction);
     void hold_angle(const Instruction &instruction);
     void hold_triangle(const Instruction &instruction);

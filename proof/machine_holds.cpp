@@ -1,5 +1,6 @@
 // What is known of an instruction's slope beside what its op's rule says: forms that were seen on the
 // expressions. Each holds together with the rule's own bound.
+#include "proof/ellipsoids.h"
 #include "proof/instruction_rules.h"
 
 #include <algorithm>
@@ -116,6 +117,20 @@ void Machine::hold_along(const Instruction &instruction) {
     const Interval size = value(factor, 0);
     const double by = divides ? up(1 / size.mignitude(), 4) : size.magnitude();
     hold_norm(out, up(times(by, norm_[vector]), 4));
+}
+
+// The distance from an ellipsoid to first order (ellipsoids.h).
+void Machine::hold_ellipsoid(const Instruction &instruction) {
+    const auto &[vector, k0, k1, inverse, by] = *instruction.ellipsoid;
+    const Slot out = instruction.out;
+    if (norm_[out] == infinity) return;
+    for (std::uint32_t i = 0; i < tape_.size[vector]; ++i)
+        if (odd_[tape_.first[vector] + i]) return;
+    std::vector<Interval> numbers;
+    for (const Slot one : inverse) numbers.push_back(value(one, 0));
+    const double slope = slope_of_ellipsoid(value(k0, 0), value(k1, 0), numbers);
+    if (slope == infinity) return;
+    hold_norm(out, up(times(times(slope, std::fabs(by)), norm_[vector]), 4));
 }
 
 // The angle between a vector and an axis turns as the vector does, by |J|/|v| at most: also on the

@@ -67,6 +67,10 @@ void Machine::need_args(const Instruction &in, std::vector<bool> &wanted) const 
     if (in.around && in.around->rest_by > 0)
         wanted[in.around->vanishing] = wanted[in.around->rest] = true;
     if (in.along) wanted[in.along->vector] = wanted[in.along->factor] = true;
+    if (in.ellipsoid) {
+        for (const Slot s : in.ellipsoid->inverse) wanted[s] = true;
+        wanted[in.ellipsoid->vector] = wanted[in.ellipsoid->k0] = wanted[in.ellipsoid->k1] = true;
+    }
     if (in.univariate) wanted[in.univariate->of] = true;
     if (in.from_axis) wanted[in.from_axis->vector] = wanted[in.from_axis->length] = true;
     if (in.between) {

@@ -43,6 +43,7 @@ void Machine::step(const Instruction &instruction) {
     if (instruction.around) hold_around(instruction);
     if (instruction.between) hold_between(instruction);
     if (instruction.along) hold_along(instruction);
+    if (instruction.ellipsoid) hold_ellipsoid(instruction);
     if (instruction.univariate) hold_univariate(instruction);
     if (instruction.from_axis) hold_angle(instruction);
     if (instruction.op == Op::Asin || instruction.op == Op::Acos) hold_triangle(instruction);

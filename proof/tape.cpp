@@ -4,6 +4,7 @@
 #include "ir/passes/inline.h"
 #include "proof/borders.h"
 #include "proof/discontinuities.h"
+#include "proof/ellipsoids.h"
 #include "proof/exact.h"
 #include "proof/flattener.h"
 #include "proof/forms.h"
@@ -150,6 +151,17 @@ Slot Flattener::emit(Scope &scope, Instruction out, Form form, const std::vector
 
 Slot Flattener::emit_plain(Scope &scope, NodeId id, Instruction out) {
     return emit(scope, std::move(out), Form::Plain, args_of(id));
+}
+
+void Flattener::find_ellipsoid(Scope &scope, NodeId id, Instruction &out) {
+    const auto found = ellipsoid(graph, id);
+    if (!found) return;
+    const ir::Type type = ir::vector_type(int(found->vector.size()));
+    const NodeId vector = graph.make(Op::Make, type, found->vector);
+    Instruction::EllipsoidOf of{
+        slot(scope, vector), slot(scope, found->k0), slot(scope, found->k1), {}, found->by};
+    for (const NodeId one : found->inverse) of.inverse.push_back(slot(scope, one));
+    out.ellipsoid = std::move(of);
 }
 
 Slot Flattener::emit_unwound(Scope &scope, NodeId id, Instruction out) {
@@ -359,6 +371,7 @@ Tape flattened(Flattening &context, NodeId root, bool unwound, const Cell *regio
         flattener.winding = winding_of(context.graph, root);
         if (!flattener.winding) return {};
         flattener.tape.winds_about = flattener.winding->axis;
+        root = flattener.winding->field;
     }
     Scope scope;
     scope.block = &flattener.tape.each;

@@ -102,6 +102,13 @@ struct Instruction {
         bool divides = false;
     };
     std::optional<Along> along;
+    // Of an ellipsoid's distance to first order (ellipsoids.h), which is `by` times as large.
+    struct EllipsoidOf {
+        Slot vector = 0, k0 = 0, k1 = 0;
+        std::vector<Slot> inverse;
+        double by = 1;
+    };
+    std::optional<EllipsoidOf> ellipsoid;
     // Of a scalar between values at the corners of a cell (interpolation.h): it is no steeper than
     // `by` times the width of their range times `vector`.
     struct Between {

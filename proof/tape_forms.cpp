@@ -82,8 +82,8 @@ Slot Flattener::emit_turned(Scope &scope, NodeId id, Instruction out) {
     }
     const auto may_be = [&](NodeId v) { return varies[slot(scope, v)]; };
     const bool is_matrix = out.op == Op::MatMul; // whose rule has the matrix' norm
-    const auto t = ir::is_vector(out.type) ? turned(graph, id, may_be, known_linear)
-                                           : std::optional<LinearMap>();
+    const auto t =
+        ir::is_vector(out.type) ? turned(graph, id, may_be, known_linear) : turned_part(graph, id);
     if (!t && is_matrix) return emit(scope, out);
     if (!t) return emit_by_pieces(scope, id, std::move(out), {id});
     bool still = true;
@@ -92,17 +92,20 @@ Slot Flattener::emit_turned(Scope &scope, NodeId id, Instruction out) {
         constants.push_back(slot(scope, c));
         still = still && !varies[constants.back()];
     }
+    const bool is_scalar = out.type == ir::Type::Float;
+    if (is_scalar && !still && cancelling.empty())
+        return emit_by_pieces(scope, id, std::move(out), {id});
     const Slot of = slot(scope, t->of);
-    if (t->turning) out.turning = turning_of(scope, *t);
+    if (t->turning && !is_scalar) out.turning = turning_of(scope, *t);
     const bool may_stand_still = scope.loop || !cancelling.empty(); // as steps do
-    if (!still && (!may_stand_still || (!is_matrix && pieces_of(id, {id}))))
+    if (!still && (!may_stand_still || (!is_matrix && !is_scalar && pieces_of(id, {id}))))
         return emit_by_pieces(scope, id, std::move(out), {id});
     if (!is_matrix) {
         out.norm = t->norm;
         out.turned = {of};
         out.turned.insert(out.turned.end(), constants.begin(), constants.end());
     }
-    known_linear.insert(id);
+    if (!is_scalar) known_linear.insert(id);
     const Slot made = emit(scope, out);
     if (still && t->whole && supports.is_base(of)) supports.make_base(made);
     return made;
@@ -177,7 +180,7 @@ Slot Flattener::sum(Scope &scope, NodeId id, Instruction out) {
     if (out.type != ir::Type::Float) return emit(scope, std::move(out));
     find_mean(scope, id, out);
     find_interpolation(scope, id, out);
-    return emit_by_pieces(scope, id, std::move(out), {id});
+    return emit_turned(scope, id, std::move(out));
 }
 
 Slot Flattener::mix(Scope &scope, NodeId id, Instruction out) {
@@ -404,6 +407,7 @@ Slot Flattener::product(Scope &scope, NodeId id, Instruction out) {
     if (out.type != ir::Type::Float && !ir::is_vector(out.type)) return emit(scope, std::move(out));
     find_around(scope, id, out);
     find_radial(scope, id, out);
+    find_ellipsoid(scope, id, out);
     find_univariate(scope, id, out);
     return emit_by_pieces(scope, id, std::move(out), {id});
 }
@@ -420,6 +424,7 @@ Slot Flattener::quotient(Scope &scope, NodeId id, Instruction out) {
     }
     if (const auto larger = without_factors(scope, id)) return slot(scope, *larger);
     find_radial(scope, id, out);
+    find_ellipsoid(scope, id, out);
     find_parallel(scope, id, out);
     if (!scope.loop && are_scaled_alike(graph, a, b, context.work))
         out.has_majorant = tape.has_majorants = true;

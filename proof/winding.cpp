@@ -149,12 +149,48 @@ struct Follower {
     }
 };
 
-} // namespace
+// The field with each wave of an angle that is no factor of what it turns as a wave of the angle and a
+// number of which nothing is known.
+struct WavesApart {
+    Graph &graph;
+    NodeId number{};
+    std::unordered_map<NodeId, NodeId> known{};
 
-std::optional<Winding> winding_of(Graph &graph, NodeId field) {
+    bool is_apart(NodeId parent, NodeId wave, NodeId other) const {
+        constexpr ir::OpSet alone{Op::Add, Op::Sub,   Op::Neg, Op::Abs,        Op::Min,
+                                  Op::Max, Op::Clamp, Op::Mix, Op::Smoothstep, Op::Pow};
+        if (!is_wave[graph[wave].op] || graph[wave].type != ir::Type::Float ||
+            !graph.reads(wave).point)
+            return false;
+        if (graph[parent].op == Op::Mul) return other == wave || !graph.reads(other).point;
+        return alone[graph[parent].op];
+    }
+    NodeId apart(NodeId wave) {
+        if (!number) number = graph.fresh_var(ir::Type::Float);
+        const NodeId angle = graph.add(graph.arg(wave, 0), number);
+        return graph.make(graph[wave].op, {angle});
+    }
+    NodeId written(NodeId id) {
+        if (!graph.reads(id).point || known.size() > max_nodes_of_windings) return id;
+        const auto [it, fresh] = known.try_emplace(id, id);
+        if (!fresh) return it->second;
+        const ir::Node node = graph[id];
+        const std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
+        std::vector<NodeId> made;
+        for (std::size_t i = 0; i < args.size(); ++i) {
+            const NodeId other = args[args.size() == 2 ? 1 - i : i];
+            made.push_back(is_apart(id, args[i], other) ? apart(args[i]) : written(args[i]));
+        }
+        if (made == args) return id;
+        return known[id] = graph.make(node.op, node.type, made, node.payload);
+    }
+};
+
+std::optional<Winding> winding_as_it_is(Graph &graph, NodeId field) {
     std::vector<NodeId> todo{field};
     std::unordered_set<NodeId> seen;
     Winding found;
+    found.field = field;
     std::vector<NodeId> candidates;
     while (!todo.empty()) {
         const NodeId id = todo.back();
@@ -188,6 +224,16 @@ std::optional<Winding> winding_of(Graph &graph, NodeId field) {
         }
     }
     return {};
+}
+
+} // namespace
+
+std::optional<Winding> winding_of(Graph &graph, NodeId field) {
+    if (auto found = winding_as_it_is(graph, field)) return found;
+    WavesApart waves{graph};
+    const NodeId apart = waves.written(field);
+    if (apart == field || waves.known.size() > max_nodes_of_windings) return {};
+    return winding_as_it_is(graph, apart);
 }
 
 } // namespace fathom::proof

@@ -12,6 +12,7 @@
 namespace fathom::proof {
 
 struct Winding {
+    ir::NodeId field; // as it is followed: waves that turn nothing are those of another angle
     int axis = 1;
     std::unordered_map<ir::NodeId, double> angles; // each differs by that number from the first one
     std::unordered_set<ir::NodeId> waves;          // all sines and cosines that the field reads

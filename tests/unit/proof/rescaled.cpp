@@ -165,3 +165,59 @@ TEST_CASE("the factors of a product are found, and numbers left aside") {
     CHECK((factors[0].number == z.size && !factors[0].divides));
     CHECK((factors[1].number == t && factors[1].divides));
 }
+
+TEST_CASE("waves of a point that is made larger are as steep as what they are over its size") {
+    struct Case {
+        const char *name;
+        bool alike; // the slope is the same whatever the size
+        std::function<NodeId(Sized &, NodeId)> field;
+    };
+    const auto waves = [](Sized &z, NodeId q) {
+        Graph &g = z.g;
+        return g.add(g.mul(z.s.sin(g.component(q, 0)), z.s.cos(g.component(q, 1))),
+                     z.s.sin(g.component(q, 2)));
+    };
+    const auto over = [&](Sized &z, NodeId q) { return z.g.div(waves(z, q), z.size); };
+    const Case cases[] = {
+        {"larger", true, [&](Sized &z, NodeId p) { return over(z, z.g.mul(p, z.size)); }},
+        {"larger and moved", true,
+         [&](Sized &z, NodeId p) {
+             return over(z, z.g.sub(z.g.vec3(0.2, 1, 0), z.g.mul(p, z.size)));
+         }},
+        {"larger and mirrored", true,
+         [&](Sized &z, NodeId p) { return over(z, z.g.mul(z.s.call(Op::Abs, p), z.size)); }},
+        {"smaller", true,
+         [&](Sized &z, NodeId p) {
+             return z.g.mul(waves(z, z.g.div({p, z.size})), z.size);
+         }},
+        {"larger, over nothing", false,
+         [&](Sized &z, NodeId p) { return waves(z, z.g.mul(p, z.size)); }},
+        {"larger, times the size", false,
+         [&](Sized &z, NodeId p) { return z.g.mul(waves(z, z.g.mul(p, z.size)), z.size); }},
+        {"one coordinate less, by its own size", false, [&](Sized &z, NodeId p) {
+             return over(
+                 z, z.g.sub(z.g.mul(p, z.size), z.g.mul(z.g.swizzle(p, std::array{1, 2, 0}),
+                                                        z.g.splat(z.g.number(0.5), Type::Vec3))));
+         }}};
+    for (const Case &one : cases) {
+        INFO(one.name);
+        Sized z;
+        REQUIRE(z.s.parameter(0.5, 2) == z.size);
+        const NodeId f = one.field(z, z.s.p);
+        const double bound = z.s.bound(f, cube(1.4)).lipschitz;
+        double steepest = 0;
+        proof::Dice dice{11};
+        for (int i = 0; i < 30'000; ++i) {
+            const double by = i % 3 == 0 ? 0.5 : i % 3 == 1 ? 2 : 0.5 + 1.5 * dice.next();
+            std::array<double, 3> p{}, q{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                p[k] = 1.4 * (2 * dice.next() - 1);
+                q[k] = p[k] + 1e-4 * (dice.next() - 0.5);
+            }
+            const double run = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+            steepest = std::max(steepest, std::fabs(z.value(f, by, p) - z.value(f, by, q)) / run);
+        }
+        CHECK(steepest <= bound * (1 + 1e-3));
+        if (one.alike) CHECK(bound <= 1.2 * steepest);
+    }
+}

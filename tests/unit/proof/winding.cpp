@@ -66,6 +66,15 @@ const std::vector<Field> winding{
          return w.g.make(Op::Max, {w.strand(w.turned(w.angle)), cut});
      }},
     {"a vortex", [](Winding &w) { return w.strand(w.turned(w.g.mul(w.g.number(2), w.r))); }},
+    {"a wave of the angle beside",
+     [](Winding &w) {
+         return w.g.add(w.strand(w.turned(w.angle)), w.g.mul(w.g.number(0.3), w.s.sin(w.angle)));
+     }},
+    {"waves of the angle and of another one that make it thicker",
+     [](Winding &w) {
+         const NodeId both = w.g.sub(w.s.sin(w.g.mul(w.g.number(2), w.angle)), w.s.cos(w.angle));
+         return w.g.sub(w.strand(w.turned(w.angle)), w.g.mul(w.g.number(0.05), both));
+     }},
     {"a strand as thick as the distance says", [](Winding &w) {
          return w.g.sub(w.strand(w.turned(w.angle)), w.g.mul(w.g.number(0.1), w.r));
      }}};
@@ -75,9 +84,10 @@ const std::vector<Field> others{
      [](Winding &w) {
          return w.g.add(w.strand(w.turned(w.angle)), w.g.mul(w.g.number(0.3), w.s.x));
      }},
-    {"a wave of the angle beside",
+    {"a wave of the angle as a factor of a coordinate",
      [](Winding &w) {
-         return w.g.add(w.strand(w.turned(w.angle)), w.g.mul(w.g.number(0.3), w.s.sin(w.angle)));
+         const NodeId beside = w.g.mul(w.g.number(0.3), w.g.mul(w.s.sin(w.angle), w.s.x));
+         return w.g.add(w.strand(w.turned(w.angle)), beside);
      }},
     {"both ways at once",
      [](Winding &w) {
@@ -95,6 +105,19 @@ const std::vector<Field> others{
          const NodeId x = w.turned(w.angle).x;
          return w.strand({x, w.g.sub(w.g.mul(c, z), w.g.mul(w.s.sin(w.angle), w.s.x))});
      }}};
+
+// With 0 in place of what is made up (Winding::field).
+NodeId with_numbers(Graph &g, NodeId root) {
+    ir::Substitution map;
+    std::vector<NodeId> todo{root};
+    while (!todo.empty()) {
+        const NodeId id = todo.back();
+        todo.pop_back();
+        if (g[id].op == Op::Var) map[id] = g.number(0);
+        todo.insert(todo.end(), g.args(id).begin(), g.args(id).end());
+    }
+    return ir::substitute(g, root, map);
+}
 
 double at_random(int i, int k) { // -1..1
     const double x = std::sin(i * 12.9898 + k * 78.233) * 43758.5453;
@@ -132,7 +155,7 @@ TEST_CASE("what winds about an axis keeps its value where angle and point turn a
             for (NodeId wave : found->waves)
                 if (found->angles.contains(w.g.arg(wave, 0)))
                     waves[wave] = w.g.make(w.g[wave].op, {w.plus(w.g.arg(wave, 0), by)});
-            const NodeId turned = ir::substitute(w.g, field, waves);
+            const NodeId turned = with_numbers(w.g, ir::substitute(w.g, found->field, waves));
             const std::array<double, 3> p{at_random(i, 0), at_random(i, 1), at_random(i, 2)};
             double best = 1e9; // by one of the two ways to turn
             for (const double way : {by, -by}) {
