@@ -250,36 +250,36 @@ class Parts {
         std::erase_if(out, [&](const Factor &one) { return !is_still(one.number); });
         return out;
     }
-    // What is as steep as the component over the factor, by each coordinate.
-    std::optional<NodeId> without_factor(NodeId id, const Factor &factor) {
+    // What is as steep as the component over the factor, by each coordinate: what stands still and is
+    // added goes, but for where the sum is `multiplied` by what does not.
+    std::optional<NodeId> without_factor(NodeId id, const Factor &factor, bool multiplied = false) {
         const ir::Node node = graph_[id];
         if (node.op == Op::Add || node.op == Op::Sub) {
             const NodeId a = graph_.arg(id, 0), b = graph_.arg(id, 1);
-            if (is_still(b)) return without_factor(a, factor);
-            const auto of_b = without_factor(b, factor);
+            if (is_still(b) && !multiplied) return without_factor(a, factor);
+            const auto of_b = without_factor(b, factor, multiplied);
             if (!of_b) return {};
-            if (is_still(a)) return node.op == Op::Sub ? graph_.neg(*of_b) : *of_b;
-            const auto of_a = without_factor(a, factor);
+            if (is_still(a) && !multiplied) return node.op == Op::Sub ? graph_.neg(*of_b) : *of_b;
+            const auto of_a = without_factor(a, factor, multiplied);
             if (!of_a) return {};
             return graph_.make(node.op, {*of_a, *of_b});
         }
         if (node.op == Op::Mul)
             for (int i = 0; i < 2; ++i) {
-                const NodeId other = graph_.arg(id, 1 - i);
-                if (!factor.divides && graph_.arg(id, i) == factor.number) return other;
-                if (const auto rest = is_still(graph_.arg(id, i))
-                                          ? std::nullopt
-                                          : without_factor(graph_.arg(id, i), factor))
+                const NodeId one = graph_.arg(id, i), other = graph_.arg(id, 1 - i);
+                if (!factor.divides && one == factor.number) return other;
+                if (is_still(one)) continue;
+                if (const auto rest = without_factor(one, factor, multiplied || !is_still(other)))
                     return graph_.mul(*rest, other);
             }
         if (node.op == Op::Div) {
             const NodeId above = graph_.arg(id, 0), below = graph_.arg(id, 1);
             if (factor.divides && below == factor.number) return above;
-            if (const auto rest = without_factor(above, factor))
+            if (const auto rest = without_factor(above, factor, multiplied || !is_still(below)))
                 return graph_.make(Op::Div, {*rest, below});
         }
         if (node.op == Op::Neg)
-            if (const auto rest = without_factor(graph_.arg(id, 0), factor))
+            if (const auto rest = without_factor(graph_.arg(id, 0), factor, multiplied))
                 return graph_.neg(*rest);
         return {};
     }

@@ -194,6 +194,14 @@ TEST_CASE("waves of a point that is made larger are as steep as what they are ov
          [&](Sized &z, NodeId p) { return waves(z, z.g.mul(p, z.size)); }},
         {"larger, times the size", false,
          [&](Sized &z, NodeId p) { return z.g.mul(waves(z, z.g.mul(p, z.size)), z.size); }},
+        {"moved and multiplied by a coordinate", false,
+         [&](Sized &z, NodeId p) {
+             Graph &g = z.g;
+             const NodeId moved = g.add(g.mul(z.size, g.component(p, 0)), g.number(3)),
+                          x = g.mul(moved, g.component(p, 1)), y = g.mul(z.size, g.component(p, 2)),
+                          w = g.mul(z.size, g.component(p, 0));
+             return over(z, g.make(Op::Make, Type::Vec3, {x, y, w}));
+         }},
         {"one coordinate less, by its own size", false, [&](Sized &z, NodeId p) {
              return over(
                  z, z.g.sub(z.g.mul(p, z.size), z.g.mul(z.g.swizzle(p, std::array{1, 2, 0}),
