@@ -331,7 +331,8 @@ std::unordered_set<NodeId> all_nodes_of(const ir::Graph &graph, NodeId root) {
     return seen;
 }
 
-constexpr std::size_t steps_of_flattening = 32; // of an instruction, in time
+// Of an instruction that no search runs again: flattening it takes as long as so many steps of one.
+constexpr std::size_t steps_of_flattening = 32;
 
 Tape flattened(Flattening &context, NodeId root, bool unwound, const Cell *region) {
     Flattener flattener(context);
@@ -376,7 +377,7 @@ Tape flattened(Flattening &context, NodeId root, bool unwound, const Cell *regio
     Scope scope;
     scope.block = &flattener.tape.each;
     flattener.tape.result = flattener.slot(scope, root);
-    context.work.take(std::size_t(flattener.count) * steps_of_flattening);
+    context.work.take(flattener.tape.once.size() * steps_of_flattening);
     if (!flattener.tape.too_large) mark_wavering(flattener.tape);
     return std::move(flattener.tape);
 }

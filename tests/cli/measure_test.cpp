@@ -160,11 +160,14 @@ TEST_CASE("a part that holds no point is listed as empty") {
 
 TEST_CASE("a wall that the mesh has holes in is said beside its measures") {
     ScratchFolder folder;
-    folder.write("shell.sdf", "sphere(1).shell(0.01)\n");
+    folder.write("shell.sdf", "box(2).shell(0.01).rotate(0.3, axis: [1, 2, 3])\n");
     const Result thin = shell(folder, "fathom measure shell.sdf --resolution 24");
     CHECK(thin.exit == 0);
     CHECK(contains(thin.err, "what stands beside the enclosures is of a mesh: walls or gaps may "
                              "have holes: one is about 0.0"));
+    folder.write("round.sdf", "sphere(1).shell(0.01)\n");
+    CHECK(contains(shell(folder, "fathom measure round.sdf --resolution 24").err,
+                   "walls thinner than cells are drawn by the solid grown by 0.0"));
     folder.write("ball.sdf", "sphere(1)\n");
     CHECK(shell(folder, "fathom measure ball.sdf --resolution 24").err.empty());
 }

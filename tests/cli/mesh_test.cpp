@@ -5,6 +5,9 @@
 
 #include <cstring>
 
+// Specks that are smaller than any cell, in no wall.
+static const char *const dust = "sphere(0.0001).repeat([0.05, 0.05, 0.05]).within(ball(1))\n";
+
 TEST_CASE("a mesh is written in the format of its suffix") {
     ScratchFolder folder;
     folder.write("ring.sdf", "param r = 1 in 0.5..2\ntorus(r, 0.3)\n");
@@ -45,13 +48,18 @@ TEST_CASE("--json prints the certificate, and says partial where something is un
                              "\"rests_on\":[\"intervals\",\"single-precision\",\"bound\"]"})
         CHECK(contains(made.out, part));
     CHECK(fs::exists(folder / "a.stl"));
-    // thinner than any cell, over a large area
+    folder.write("dust.sdf", dust);
+    const Result specks = shell(folder, "fathom mesh dust.sdf --resolution 24 --json -o a.stl");
+    CHECK(specks.exit == 0);
+    CHECK(contains(specks.out, "{\"status\":\"partial\","));
+    CHECK(contains(specks.out, "\"mesh_to_surface\":null"));
+    CHECK(contains(specks.err, "cells may hold surface"));
+    // thinner than any cell, over a large area: drawn as if it were wider
     folder.write("slit.sdf", "box(1) - box([2, 0.00001, 2])\n");
     const Result slit = shell(folder, "fathom mesh slit.sdf --resolution 24 --json -o a.stl");
-    CHECK(slit.exit == 0);
-    CHECK(contains(slit.out, "{\"status\":\"partial\","));
-    CHECK(contains(slit.out, "\"mesh_to_surface\":null"));
-    CHECK(contains(slit.err, "cells may hold surface"));
+    CHECK(contains(slit.out, "{\"status\":\"certified\","));
+    CHECK(contains(slit.out, "\"mesh_components\":2"));
+    CHECK(contains(slit.err, "gaps thinner than cells are drawn by the solid shrunk by 0.0"));
     CHECK(shell(folder, "fathom mesh ball.sdf --json -o -").exit == 2);
 }
 
@@ -92,22 +100,26 @@ TEST_CASE("--certify says whether anything is proved, with a document and withou
         CHECK_FALSE(contains(off.out, part));
     CHECK(shell(folder, make + "--json --certify on").out == shell(folder, make + "--json").out);
     CHECK(contains(shell(folder, make + "--certify perhaps").err, "wants on or off"));
-    folder.write("slit.sdf", "box(1) - box([2, 0.00001, 2])\n");
-    const Result slit = shell(folder, "fathom mesh slit.sdf --resolution 24 --certify on -o a.stl");
-    CHECK(contains(slit.err, "a.stl: partial: of "));
+    folder.write("dust.sdf", dust);
+    const Result specks =
+        shell(folder, "fathom mesh dust.sdf --resolution 24 --certify on -o a.stl");
+    CHECK(contains(specks.err, "a.stl: partial: of "));
 }
 
 TEST_CASE(
     "walls thinner than cells are said, with what shows them, with a certificate and without") {
     ScratchFolder folder;
-    for (const char *text :
-         {"sphere(2) - sphere(1.98)", "(box(2) - box(1.98)).rotate(0.3, axis: [1, 2, 3])"}) {
-        folder.write("shell.sdf", std::string(text) + "\n");
-        const Result made = shell(folder, "fathom mesh shell.sdf --resolution 24 -o a.stl");
-        CHECK(made.exit == 0);
-        CHECK(contains(made.err, "thick, and cells have sides of "));
-        CHECK(contains(made.err, "shows it, or a resolution of "));
-    }
+    folder.write("shell.sdf", "(box(2) - box(1.98)).rotate(0.3, axis: [1, 2, 3])\n");
+    const Result shown = shell(folder, "fathom mesh shell.sdf --resolution 24 -o a.stl");
+    CHECK(shown.exit == 0);
+    CHECK(contains(shown.err, "thick, and cells have sides of "));
+    CHECK(contains(shown.err, "shows it, or a resolution of "));
+    folder.write("round.sdf", "sphere(2) - sphere(1.98)\n"); // is drawn whole
+    const Result whole = shell(folder, "fathom mesh round.sdf --resolution 24 --json -o a.stl");
+    CHECK(contains(whole.out, "{\"status\":\"certified\","));
+    CHECK(contains(whole.out, "\"mesh_components\":2"));
+    CHECK(contains(whole.err, "walls thinner than cells are drawn by the solid grown by 0.1"));
+    CHECK(contains(whole.err, "gaps and holes narrower than 0.2"));
     folder.write("thick.sdf", "sphere(2) - sphere(1)\n");
     CHECK(shell(folder, "fathom mesh thick.sdf --resolution 24 -o a.stl").err.empty());
     CHECK(shell(folder, "fathom mesh thick.sdf --resolution 24 --json -o a.stl").err.empty());

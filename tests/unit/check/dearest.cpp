@@ -68,7 +68,7 @@ TEST_CASE("a field without loops is named with its choices") {
     for (int i = 0; i < 40; ++i)
         field +=
             "  if p.y > " + std::to_string(i) + " * 0.01 { s = s * 1.01 } else { s = s * p.z }\n";
-    const Said all = said(small + field + "  s\n}, within: ball(2))\n", 8'000);
+    const Said all = said(small + field + "  s\n}, within: ball(2))\n", 2'000);
     CHECK(all.at.starts_with("implicit(p => {\n  var s"));
     CHECK(says(all, "most of it goes into this field"));
     CHECK(says(all, "40 steps and choices"));
