@@ -16,4 +16,7 @@ struct Vocabulary {
 };
 Vocabulary vocabulary();
 
+// What a type of another language is called here, as `vec3` for HLSL's `float3`; else as it is.
+std::string_view our_type(std::string_view type); // foreign/answers.cpp
+
 } // namespace fathom::lang

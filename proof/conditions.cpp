@@ -161,9 +161,9 @@ void Prover::test_conditions() {
                 diagnostics
                     .add(Code::ProofLimit, condition.at,
                          "the proof of this scene takes more work than is allowed: not all "
-                         "arguments "
-                         "are tested")
-                    .help("hang them on fewer params, or allow more by `--limit proof=…`");
+                         "arguments are tested")
+                    .note(options.limit_note)
+                    .help("hang them on fewer params; " + options.limit_help);
             return;
         }
         if (!seen.emplace(condition.holds, condition.at.begin).second) continue;

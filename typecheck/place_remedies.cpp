@@ -137,7 +137,8 @@ bool help_with_place(Interpreter &ev, Diagnostic &d, std::string_view name,
         if (sizes[1] == 1) {
             const Span before = args[0].span;
             const std::string_view text = ev.sources[before.source].text;
-            const std::size_t callee = text.rfind(name, before.begin);
+            const std::size_t callee = // the argument may begin with such a name, too
+                before.begin > 0 ? text.rfind(name, before.begin - 1) : text.npos;
             if (callee == text.npos) return false;
             const auto at = static_cast<std::uint32_t>(callee);
             d.help(fmt::format("with round edges it is `rounded_{}`", name),

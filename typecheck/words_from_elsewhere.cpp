@@ -3,6 +3,8 @@
 // and `smooth_min` are one. Those with other letters are taken as they are.
 #include "typecheck/remedies.h"
 
+#include "lang/vocabulary.h"
+
 #include <unordered_map>
 #include <unordered_set>
 
@@ -311,16 +313,10 @@ constexpr Row ways_of_types[] = {
 };
 
 constexpr Row types[] = {
-    {"float", "number real double f32 f64 num half fixed"},
-    {"int", "integer i32 u32 usize"},
-    {"bool", "boolean"},
-    {"string", "str"},
-    {"vec2", "vector2 float2 vec2f half2"},
-    {"vec3", "vector3 float3 vec3f point half3 fixed3"},
-    {"vec4", "vector4 float4 vec4f half4 fixed4"},
-    {"color", "colour"},
-    {"shape", "solid sdf"},
-    {"mat3", "matrix"},
+    // beside lang::our_type
+    {"float", "real num"}, {"int", "integer usize"},  {"string", "str"},
+    {"vec2", "vector2"},   {"vec3", "vector3 point"}, {"vec4", "vector4"},
+    {"color", "colour"},   {"shape", "solid sdf"},    {"mat3", "matrix"},
 };
 
 // What stands before and behind a thing's name where a library has a word for all of its kind: `sdBox`,
@@ -407,6 +403,9 @@ std::string_view way_of_type(std::string_view name) {
 
 std::string_view type_from_elsewhere(std::string_view name) {
     static const Table table = table_of(types);
+    const std::string plain = plain_name(name);
+    for (const std::string_view spelled : {name, std::string_view(plain)})
+        if (const std::string_view ours = lang::our_type(spelled); ours != spelled) return ours;
     return look_in(table, name);
 }
 

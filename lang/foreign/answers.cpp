@@ -2,6 +2,7 @@
 // instead, with the edit where that is mechanical. What no other language has either: failures.cpp.
 #include "base/text.h"
 #include "lang/foreign/foreign.h"
+#include "lang/vocabulary.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 // Calls that name a type, as C++, Java and Rust have them, and casts: `static_cast<int>(x)`,
-// `std::make_shared<Sphere>(1)`, `parse::<f32>()`, `(int)x`, and vectors of a type. The words are put right before layout, so
-// that all behind them is read and only the one mistake is told. No text of ours has such a form.
+// `std::make_shared<Sphere>(1)`, `parse::<f32>()`, `(int)x`, and vectors of a type. The words are put
+// right before layout, so that all behind them is read and only the one mistake is told. No text of
+// ours has such a form.
 #include "lang/foreign/word_changes.h"
 
 #include <array>

@@ -2,6 +2,7 @@
 // `fn`, names without a value, sliders and uniforms.
 #include "base/text.h"
 #include "lang/foreign/foreign.h"
+#include "lang/vocabulary.h"
 
 #include <algorithm>
 #include <array>

@@ -297,8 +297,7 @@ class ForeignSyntax : protected TokenReading {
 
 // -- within the folder ---------------------------------------------------------------------------
 
-bool is_type_word(std::string_view word);         // of any language
-std::string_view our_type(std::string_view type); // `vec3` for HLSL's `float3`; else as it is
+bool is_type_word(std::string_view word); // of any language
 
 inline constexpr std::string_view changes_nothing =
     "a function changes none of its arguments: it returns what is new, several numbers as a "
