@@ -3,6 +3,7 @@
 #include "ir/passes/operations.h"
 #include "ir/passes/walk.h"
 #include "proof/discontinuities.h"
+#include "proof/ellipsoids.h"
 #include "proof/inexact.h"
 #include "proof/param_bounds.h"
 #include "proof/prover.h"
@@ -352,6 +353,16 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             if (Diagnostic *d = report_at(id, blamed, Code::FieldSingular,
                                           what + " is divided by `" + *param + "`, which may be 0"))
                 d->help("begin its range above 0, as in `in 0.001..1`");
+            return;
+        }
+        if (divides && ellipsoid(graph, blamed.node)) {
+            if (Diagnostic *d = report_at(id, blamed, Code::FieldSingular,
+                                          what + " jumps in an ellipsoid's middle, near " +
+                                              point_text(b.where, dims)))
+                d->note("`k0 * (k0 - 1) / k1` is 0/0 there, and has another value from each side")
+                    .help("give its inside apart, as in `if k0 < 1 { (k0 - 1) * least } else { k0 "
+                          "* (k0 - 1) / k1 }` with the least radius, or take the library's "
+                          "`ellipsoid`");
             return;
         }
         if (!b.came_near || b.each_side) {
