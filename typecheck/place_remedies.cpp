@@ -46,6 +46,14 @@ bool is_literal(const Interpreter &ev, const Argument &a) {
     return a.value.kind == ValueKind::Vec && source_text(ev, a.span).starts_with('[');
 }
 
+// Of a solid with an axis, where the last argument names another one.
+bool stands_along_y(std::string_view solid, std::string_view last) {
+    constexpr std::array<std::string_view, 6> axes{"X", "Y", "Z", "-X", "-Y", "-Z"};
+    constexpr std::array<std::string_view, 3> without_axis{"sphere", "ellipsoid", "box"};
+    return std::ranges::find(axes, last) != axes.end() &&
+           std::ranges::find(without_axis, solid) == without_axis.end();
+}
+
 // From corner to corner; nothing where these are a size and a place.
 std::optional<Placed> between_corners(const Interpreter &ev, const Argument &a, const Argument &b,
                                       int size) {
@@ -161,6 +169,13 @@ bool help_with_place(Interpreter &ev, Diagnostic &d, std::string_view name,
                    fmt::format("{}, {}", radii, placed.given), placed.moved);
     }
     if (args.size() != formals.size() + 1) return false;
+    if (const std::string axis = source(args.size() - 1);
+        dimensions == 3 && stands_along_y(name, axis)) {
+        const std::string given = source_text(ev, join(args[0].span, args[args.size() - 2].span));
+        return axis == "Y" ? say("its axis is Y", given, "")
+                           : say("its axis is Y: `.orient` turns it", given,
+                                 fmt::format(".orient(Y, {})", axis));
+    }
     const auto fits = [&](std::size_t i, std::size_t formal) {
         const Formal &f = formals[formal];
         return sizes[i] == (f.vector_size > 0 ? f.vector_size : 1) ||

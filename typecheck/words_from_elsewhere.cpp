@@ -68,7 +68,7 @@ constexpr Row names[] = {
     {"repeat", "tile tiled replicate lattice rep replim repetition limitedrepetition "
                "repeatlimited mod1 mod2 mod3 domainrepetition"},
     {"repeat_polar", "polarrepeat radialrepeat circulararray polararray circularpattern "
-                     "modpolar radial"},
+                     "modpolar radial polar"},
     {"shell", "onion hollow thicken"},
     {"offset", "inflate dilate expand outset opround oprounding"},
     {"elongate", "stretch"},
