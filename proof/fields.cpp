@@ -261,6 +261,20 @@ std::string way_without_jump(const std::optional<Op> &cause) {
 
 } // namespace
 
+// The distance from an ellipsoid to first order, which is 0/0 in the middle.
+bool Prover::report_ellipsoid(ShapeId id, const FieldBound &bound, const Blamed &blamed,
+                              const std::string &what) {
+    if (!bound.came_near || bound.each_side || !ellipsoid(graph, blamed.node)) return false;
+    Diagnostic *d = report_at(id, blamed, Code::FieldSingular,
+                              what + " jumps in an ellipsoid's middle, near " +
+                                  point_text(bound.where, scene.shapes[id].dims));
+    if (d)
+        d->note("`k0 * (k0 - 1) / k1` is 0/0 there, and has another value from each side")
+            .help("give its inside apart, as in `if k0 < 1 { (k0 - 1) * least } else { k0 * (k0 - "
+                  "1) / k1 }` with the least radius, or take the library's `ellipsoid`");
+    return true;
+}
+
 void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &what) {
     int dims = scene.shapes[id].dims;
     const bool leaf = scene.shapes[id].kind == ShapeKind::Leaf;
@@ -275,6 +289,7 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     const Blamed blamed = blame(id, b);
     const bool divides = blamed.node && graph[blamed.node].op == Op::Div;
     std::string cause = divides ? cause_text(Op::Div) : cause_text(b.cause, b.trouble);
+    if (divides && report_ellipsoid(id, b, blamed, what)) return;
     if (divides && report_division(id, b, blamed, what)) return;
     const bool endless = !place(id).box.finite() && !place(id).zone;
     const bool grows = !divides && (b.trouble == Trouble::None || b.trouble == Trouble::Overflow ||
@@ -353,16 +368,6 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             if (Diagnostic *d = report_at(id, blamed, Code::FieldSingular,
                                           what + " is divided by `" + *param + "`, which may be 0"))
                 d->help("begin its range above 0, as in `in 0.001..1`");
-            return;
-        }
-        if (divides && ellipsoid(graph, blamed.node)) {
-            if (Diagnostic *d = report_at(id, blamed, Code::FieldSingular,
-                                          what + " jumps in an ellipsoid's middle, near " +
-                                              point_text(b.where, dims)))
-                d->note("`k0 * (k0 - 1) / k1` is 0/0 there, and has another value from each side")
-                    .help("give its inside apart, as in `if k0 < 1 { (k0 - 1) * least } else { k0 "
-                          "* (k0 - 1) / k1 }` with the least radius, or take the library's "
-                          "`ellipsoid`");
             return;
         }
         if (!b.came_near || b.each_side) {

@@ -206,6 +206,8 @@ struct Prover {
     Blamed blame(ir::ShapeId id, const FieldBound &bound);
     Diagnostic *report_at(ir::ShapeId id, const Blamed &blamed, Code code, std::string message);
     std::optional<std::string> divides_by_0(ir::ShapeId id);
+    bool report_ellipsoid(ir::ShapeId id, const FieldBound &bound, const Blamed &blamed,
+                          const std::string &what);
     bool report_division(ir::ShapeId id, const FieldBound &bound, const Blamed &blamed,
                          const std::string &what); // false: not said here
     void report_unplaced(ir::ShapeId id, const FieldBound &bound, const Blamed &blamed,
