@@ -187,7 +187,8 @@ class Printer {
     }
     void marked_line(const Source &source, std::uint32_t line, std::vector<Mark> marks);
     void remark(std::string_view word, std::string_view style, std::string_view message);
-    void lines_of_all(const std::string &all);
+    void new_lines(const std::string &lines, std::size_t number, std::size_t most);
+    bool edited_block(const Fix &fix, const Sources &sources);
     void edited_lines(const Fix &fix, const Sources &sources);
     std::string &out() { return out_; }
 
@@ -310,29 +311,45 @@ void Printer::remark(std::string_view word, std::string_view style, std::string_
     }
 }
 
-// The lines that stand in place of all of a text.
-void Printer::lines_of_all(const std::string &all) {
-    constexpr std::size_t max_lines = 60;
+// Lines that stand in place of others, from a number on.
+void Printer::new_lines(const std::string &lines, std::size_t number, std::size_t most) {
     row("", "");
-    std::size_t number = 0;
-    for (std::size_t begin = 0; begin < all.size();) {
-        const std::size_t end = std::min(all.find('\n', begin), all.size());
-        if (++number > max_lines) {
+    for (std::size_t begin = 0; begin < lines.size(); ++number) {
+        if (most-- == 0) {
             row("…", "");
             return;
         }
-        row(fmt::to_string(number), for_terminal(all.substr(begin, end - begin)));
+        const std::size_t end = std::min(lines.find('\n', begin), lines.size());
+        row(fmt::to_string(number), for_terminal(lines.substr(begin, end - begin)));
         begin = end + 1;
     }
 }
 
-// The lines as the edits would make them, where each edit stays within its line.
+// What one edit over several lines gives: these lines as a whole. False where it is not such.
+bool Printer::edited_block(const Fix &fix, const Sources &sources) {
+    if (fix.edits.size() != 1 || !fix.edits[0].span.source) return false;
+    const Edit &edit = fix.edits[0];
+    const Source &source = sources[edit.span.source];
+    const std::uint32_t first = position(source, edit.span.begin).line;
+    const std::uint32_t last = position(source, std::max(edit.span.begin, edit.span.end)).line;
+    const bool breaks = edit.replacement.find('\n') != std::string::npos;
+    if (first == last && !breaks) return false;
+    const bool all = edit.span.begin == 0 && edit.span.end == source.text.size();
+    const std::string_view before = line_text(source, first), behind = line_text(source, last);
+    const std::size_t from = edit.span.begin - source.line_starts[first - 1];
+    const std::size_t to = edit.span.end - source.line_starts[last - 1];
+    const std::string lines = std::string(before.substr(0, std::min(from, before.size()))) +
+                              edit.replacement +
+                              std::string(behind.substr(std::min(to, behind.size())));
+    if (lines.find_first_not_of(" \t\n") == std::string::npos) return true; // nothing stays
+    new_lines(lines, first, all ? 60 : 12);
+    return true;
+}
+
+// The lines as the edits would make them.
 void Printer::edited_lines(const Fix &fix, const Sources &sources) {
     constexpr std::size_t max_lines = 4;
-    if (fix.edits.size() == 1 && fix.edits[0].span.source && fix.edits[0].span.begin == 0 &&
-        fix.edits[0].span.end == sources[fix.edits[0].span.source].text.size())
-        if (fix.edits[0].replacement.find('\n') != std::string::npos)
-            return lines_of_all(fix.edits[0].replacement);
+    if (edited_block(fix, sources)) return;
     std::vector<Edit> edits = fix.edits;
     std::stable_sort(edits.begin(), edits.end(),
                      [](const Edit &a, const Edit &b) { return a.span < b.span; });

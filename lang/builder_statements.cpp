@@ -143,7 +143,7 @@ void Builder::param(Index first, Index last) {
             const std::string ends = written(*param.low) + ".." + written(*param.high);
             if (!std::holds_alternative<String>(ast_.exprs[*param.low].kind)) // told by its type
                 foreign(span(*range), "a parameter's range is written `low..high`")
-                    .help("write " + in_code(ends), {{span(*range), ends}});
+                    .help(to_write(ends), {{span(*range), ends}});
         } else if (!std::holds_alternative<Poison>(expr.kind)) {
             diagnostics_
                 .add(Code::SyntaxError, span(*range), "a parameter's range is written `low..high`")
@@ -255,7 +255,7 @@ void Builder::assignment() {
     }
     if (kind(at) == Tok::Assign && names_function(target.id)) { // `f(x) = …`
         foreign(span(target), "a function is declared with `fn`")
-            .help("write " + in_code("fn " + std::string(text(target.begin, target.end)) + " = …"),
+            .help(to_write("fn " + std::string(text(target.begin, target.end)) + " = …"),
                   {{{id_, target.begin, target.begin}, "fn "}});
         const lang::Call &head = std::get<lang::Call>(ast_.exprs[target.id].kind);
         const lang::Name &called = std::get<lang::Name>(ast_.exprs[head.callee].kind);

@@ -101,4 +101,9 @@ std::string brief(std::string_view text) {
 
 std::string in_code(std::string_view text) { return "`" + brief(text) + "`"; }
 
+std::string to_write(std::string_view text) {
+    const std::string code = in_code(text);
+    return code == "`…`" ? "write it so" : "write " + code;
+}
+
 } // namespace fathom::lang

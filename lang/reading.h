@@ -44,6 +44,8 @@ enum class Wanted {
 // A text as it can stand in a message: of one line and not long, else `…`; and in backticks.
 std::string brief(std::string_view text);
 std::string in_code(std::string_view text);
+// "write `…`" of what an edit writes, which is shown with it where it is long.
+std::string to_write(std::string_view text);
 
 template <std::size_t N>
 bool is_one_of(std::string_view word, const std::array<std::string_view, N> &words) {

@@ -66,7 +66,7 @@ void ForeignSyntax::settle_foreign_names() {
             if (member->name.text == "PI" || member->name.text == "TAU") {
                 const std::string ours = member->name.text == "PI" ? "pi" : "tau";
                 foreign(all, "the mathematical constants need no module")
-                    .help("write " + in_code(ours), {{all, ours}});
+                    .help(to_write(ours), {{all, ours}});
                 expr.kind = Name{ours, word(ours == "pi" ? "pi" : "tau")};
                 continue;
             }
@@ -77,7 +77,7 @@ void ForeignSyntax::settle_foreign_names() {
                 continue;
             }
             foreign(foreign_name.span, "the mathematical functions need no module")
-                .help("write " + in_code(member->name.text), {{qualifier, ""}});
+                .help(to_write(member->name.text), {{qualifier, ""}});
             expr.kind = Name{member->name.text, member->name.word};
         } else if (name[0] == 'T' || name[0] == 'F') {
             const bool value = name[0] == 'T';
@@ -287,8 +287,8 @@ bool ForeignSyntax::where_clause(Index first, Index at) {
         "let " + std::string(text(token(at + 1).begin, token(end - 1).end)) + "; ";
     lost_.push_back(at + 1);
     foreign(span(at), "a name is bound before it is used")
-        .help("write " + in_code(let + "…"), {{{id_, token(first).begin, token(first).begin}, let},
-                                              {{id_, token(at - 1).end, token(end - 1).end}, ""}});
+        .help(to_write(let + "…"), {{{id_, token(first).begin, token(first).begin}, let},
+                                    {{id_, token(at - 1).end, token(end - 1).end}, ""}});
     return true;
 }
 
@@ -309,7 +309,7 @@ bool ForeignSyntax::shape_behind_call(Index first, Index at) {
         empty ? std::string(text(first)) + "(" + shape + ")" : head + " { " + shape + " }";
     foreign(span(first, at - 1), empty ? "what a function is given stands in its parentheses"
                                        : "the shapes that a function is given stand in braces")
-        .help("write " + in_code(written), {{span(first, end - 1), written}});
+        .help(to_write(written), {{span(first, end - 1), written}});
     return true;
 }
 

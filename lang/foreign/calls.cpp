@@ -14,8 +14,7 @@ bool ForeignSyntax::foreign_lambda(Index at) {
         return false;
     const std::string head = std::string(text(at)) + " =>";
     Diagnostic &d = foreign(span(at - 1), "a function without a name is written `p => …`");
-    if (kind(at + 1) == Tok::Colon)
-        d.help("write " + in_code(head + " …"), {{span(at - 1, at + 1), head}});
+    if (kind(at + 1) == Tok::Colon) d.help(to_write(head + " …"), {{span(at - 1, at + 1), head}});
     return true;
 }
 
@@ -59,7 +58,7 @@ bool ForeignSyntax::separated_unit(Index at) {
     if (!degrees && unit != "deg" && unit != "rad" && unit != "turn") return false;
     const std::string angle = std::string(text(at - 1)) + (degrees ? "deg" : std::string(unit));
     diagnostics_.add(Code::BadNumber, span(at - 1, at), "a unit touches its number")
-        .help("write " + in_code(angle), {{span(at - 1, at), angle}});
+        .help(to_write(angle), {{span(at - 1, at), angle}});
     return true;
 }
 
@@ -79,7 +78,7 @@ bool ForeignSyntax::foreign_slice(Index at) {
     const std::string from(text(token(open + 1).begin, token(at - 1).end)),
         to(text(token(at + 1).begin, token(close - 1).end)), list(text(open - 1));
     const std::string written = "[for i in " + from + ".." + to + " { " + list + "[i] }]";
-    d.help("write " + in_code(written), {{span(open - 1, close), written}});
+    d.help(to_write(written), {{span(open - 1, close), written}});
     return true;
 }
 
@@ -144,7 +143,7 @@ bool ForeignSyntax::joined_by_space(Index at, bool list) {
         if (joined.empty())
             d.help("join it to them: `\"r = \" + r`");
         else
-            d.help("write " + in_code(joined), {{span(name, at), joined}});
+            d.help(to_write(joined), {{span(name, at), joined}});
         return true;
     }
     if (text(name) == "new") {
@@ -162,13 +161,13 @@ bool ForeignSyntax::joined_by_space(Index at, bool list) {
         !list && open > 0 && kind(open - 1) == Tok::Name && !is_declared(std::string(text(name)));
     if (argument) {
         foreign(span(name, at), "an argument is named with `:`")
-            .help("write " + in_code(std::string(text(name)) + ": " + std::string(text(at))),
+            .help(to_write(std::string(text(name)) + ": " + std::string(text(at))),
                   {{{id_, end, end}, ":"}});
         return true;
     }
     if (found == Tok::ListOpen) return false;
     foreign(span(name, at), "a call's arguments stand in parentheses")
-        .help("write " + in_code(std::string(text(name)) + "(" + std::string(text(at)) + ")"),
+        .help(to_write(std::string(text(name)) + "(" + std::string(text(at)) + ")"),
               {{{id_, end, token(at).begin}, "("}, {{id_, token(at).end, token(at).end}, ")"}});
     return true;
 }

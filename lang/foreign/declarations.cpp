@@ -132,8 +132,8 @@ void ForeignSyntax::foreign_param(Index first, Index name) {
     if (number) {
         const std::string range = range_around(text(value), negative);
         edits.push_back({{id_, token(value).end, token(value).end}, " in " + range});
-        d.help("write " + in_code("param " + declared + " = " + (negative ? "-" : "") +
-                                  std::string(text(value)) + " in " + range),
+        d.help(to_write("param " + declared + " = " + (negative ? "-" : "") +
+                        std::string(text(value)) + " in " + range),
                std::move(edits));
         return;
     }
@@ -155,7 +155,7 @@ bool ForeignSyntax::range_of_param(Index comma) {
     const std::string range = std::string(text(token(open).end, token(comma).begin)) + ".." +
                               std::string(text(token(comma + 1).begin, token(close).begin));
     foreign(span(open, close), "a param's range stands behind `in`")
-        .help("write " + in_code("in " + range),
+        .help(to_write("in " + range),
               {{{id_, token(open - 1).end, token(close).end}, " in " + range}});
     return true;
 }
@@ -197,7 +197,7 @@ bool ForeignSyntax::foreign_stream(Index first, Index name) {
                " = #ffffff`; other vectors are made of numbers, "
                "each a `param`");
     else
-        d.help("write " + in_code("param " + declared + " = " + value),
+        d.help(to_write("param " + declared + " = " + value),
                {{span(first, name), "param " + declared + " = " + value}});
     return true;
 }
@@ -241,7 +241,7 @@ void ForeignSyntax::destructuring(Index first, Index from, Index past, Index ass
     }
     Diagnostic &d = foreign(span(first, assign - 1), "each name is bound by a `let` of its own");
     if (plain && !names.empty() && written.find('\n') == std::string::npos)
-        d.help("write " + in_code(written), {{span(first, end - 1), written}});
+        d.help(to_write(written), {{span(first, end - 1), written}});
     else
         d.help("write `let a = list[0]`, and so on");
 }
@@ -259,7 +259,7 @@ void ForeignSyntax::foreign_unbound(Index first, Index name, std::string_view ty
         d.help("leave it away: `let " + declared + " = …` declares it where it has its value",
                {without_statement(first)});
     else if (in_function_ && !zero.empty())
-        d.help("write " + in_code("var " + typed + " = " + std::string(zero)),
+        d.help(to_write("var " + typed + " = " + std::string(zero)),
                {{span(first, name), "var " + typed + " = " + std::string(zero)}});
     else
         d.help("write " + in_code((in_function_ ? "var " : "let ") + typed + " = …"));
@@ -275,7 +275,7 @@ void ForeignSyntax::foreign_curried(Index first, Index name, Index past) {
     head += ")";
     lost_.push_back(name);
     foreign(span(first, past - 1), "a function is declared with `fn`")
-        .help("write " + in_code(head), {{span(first, past - 1), head}});
+        .help(to_write(head), {{span(first, past - 1), head}});
 }
 
 // `def f(x: float) -> float:`, `function f(x: number): number {`, `float f(vec3 p) {`.
@@ -372,7 +372,7 @@ bool ForeignSyntax::foreign_head(Index first) {
                                            : "a name is bound with `let`");
         std::vector<Edit> edits{{span(first, name), let}};
         for (Edit &further : further_names(name + 2, name + 2)) edits.push_back(std::move(further));
-        d.help("write " + in_code(let + " = …"), std::move(edits));
+        d.help(to_write(let + " = …"), std::move(edits));
         return true;
     }
     if (!ends_statement(name + 1)) return false;
@@ -420,7 +420,7 @@ bool ForeignSyntax::foreign_binding(Index at) {
         kind(before - 1) == Tok::Colon) { // `l: float[]`
         const std::string type = "[" + std::string(text(before)) + "]";
         foreign(span(before, at + 1), "a list's type stands in brackets")
-            .help("write " + in_code(type), {{span(before, at + 1), type}});
+            .help(to_write(type), {{span(before, at + 1), type}});
         return true;
     }
     if (before > 0 && kind(before) == Tok::Name && kind(before - 1) != Tok::Colon &&
@@ -480,8 +480,7 @@ bool ForeignSyntax::foreign_binding(Index at) {
             edits.push_back({span(i, i + 1), name});
             renamed_.insert(i + 1);
         }
-        foreign(span(before, at), "a name is one word")
-            .help("write " + in_code(name), std::move(edits));
+        foreign(span(before, at), "a name is one word").help(to_write(name), std::move(edits));
         return true;
     }
     const bool typed = is_type_word(text(before)) || type_named(text(before)) != TypeName::Unknown;
@@ -493,7 +492,7 @@ bool ForeignSyntax::foreign_binding(Index at) {
     const std::string written = std::string(text(at)) + ": " + std::string(text(before));
     lost_.push_back(at);
     foreign(span(before, at), "a type stands behind its name")
-        .help("write " + in_code(written), {{span(before, at), written}});
+        .help(to_write(written), {{span(before, at), written}});
     return true;
 }
 

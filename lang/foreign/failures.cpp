@@ -7,8 +7,7 @@
 namespace fathom::lang {
 
 bool ForeignSyntax::foreign_instead(Index at, std::string message, const std::string &replacement) {
-    foreign(span(at), std::move(message))
-        .help("write " + in_code(replacement), {{span(at), replacement}});
+    foreign(span(at), std::move(message)).help(to_write(replacement), {{span(at), replacement}});
     return true;
 }
 
@@ -106,7 +105,7 @@ bool ForeignSyntax::foreign_list(Index at) {
         const std::string list = nested_loops(open, at);
         Diagnostic &d = foreign(span(at), "in a list, the loop stands before what it gives");
         if (!list.empty() && list.find('\n') == std::string::npos)
-            d.help("write " + in_code(list), {{span(open, close), list}});
+            d.help(to_write(list), {{span(open, close), list}});
         else
             d.help("write `[for … { … }]`");
         return true;
@@ -162,7 +161,7 @@ bool ForeignSyntax::foreign_group(Index at, bool list) {
         }
         const std::string name(text(swapped ? before : at)), type(text(swapped ? at : before));
         foreign(span(before, at), "a parameter's type stands behind its name, after a `:`")
-            .help("write " + in_code(name + ": " + type), {{span(before, at), name + ": " + type}});
+            .help(to_write(name + ": " + type), {{span(before, at), name + ": " + type}});
         return true;
     }
     if (found == Tok::If) {
@@ -176,7 +175,7 @@ bool ForeignSyntax::foreign_group(Index at, bool list) {
         if (at == open + 1 && kind(at + 1) == Tok::Name && kind(at + 2) != Tok::In) // Lisp's
             d.help("a loop is written `for i in list { … }`");
         else if (!list.empty() && list.find('\n') == std::string::npos) // `sum(x for x in l)`
-            d.help("write " + in_code(list), {{span(open + 1, close - 1), list}});
+            d.help(to_write(list), {{span(open + 1, close - 1), list}});
         else if (at == open + 1 && kind(open - 1) == Tok::Name)
             d.help("a block takes it", {{span(open), " { "}, {span(close), " }"}});
         else
@@ -255,7 +254,7 @@ void ForeignSyntax::changed_parameter(Index word, Index type) {
     Diagnostic &d =
         foreign(span(word, type + 1), "a parameter's type stands behind its name, after a `:`");
     if (text(word) == "inout" || text(word) == "out") d.note(std::string(changes_nothing));
-    d.help("write " + in_code(ours), {{span(word, type + 1), ours}});
+    d.help(to_write(ours), {{span(word, type + 1), ours}});
 }
 
 // Where a declaration's name should stand.
@@ -332,7 +331,7 @@ bool ForeignSyntax::foreign_in(Index at) {
         if (!simple) return true;
         const std::string head = std::string(text(name)) + " in " + std::string(text(at + 2)) +
                                  ".." + std::string(text(test + 2));
-        d.help("write " + in_code("for " + head + " { … }"), {{span(name, brace - 1), head}});
+        d.help(to_write("for " + head + " { … }"), {{span(name, brace - 1), head}});
         return true;
     }
     if ((found == Tok::Assign && foreign_count(at)) || foreign_for_words(at)) return true;
@@ -377,7 +376,7 @@ bool ForeignSyntax::foreign_function_body(Index at) {
         is_one_of(kind(at + 1), {Tok::Body, Tok::Trailing, Tok::Assign})) {
         const std::uint32_t end = token(at - 1).end;
         foreign(span(at), "a function's result stands behind `->`")
-            .help("write " + in_code("-> " + std::string(text(at))), {{{id_, end, end}, " ->"}});
+            .help(to_write("-> " + std::string(text(at))), {{{id_, end, end}, " ->"}});
         return true;
     }
     if (found == Tok::End && text(at) != ";") { // on the lines below

@@ -35,8 +35,7 @@ void ForeignSyntax::foreign_name_parts(Index left, Index right) {
             text(i + 2) == text(right))
             edits.push_back({span(i, i + 2), name});
     lost_.push_back(left), lost_.push_back(right);
-    foreign(span(left, right), "a name has no `-`")
-        .help("write " + in_code(name), std::move(edits));
+    foreign(span(left, right), "a name has no `-`").help(to_write(name), std::move(edits));
 }
 
 // Whether the statement's value, behind the name, uses it.

@@ -111,8 +111,8 @@ class Forms : WordChanges {
         begin_change(i);
         const std::string ours = "[" + std::string(text(item)) + "]";
         say(words(i, end), "a list's type stands in brackets")
-            .help("write " + in_code(ours), {{span(words_[i].begin, words_[item].begin), "["},
-                                             {span(words_[item].end, words_[end].end), "]"}});
+            .help(to_write(ours), {{span(words_[i].begin, words_[item].begin), "["},
+                                   {span(words_[item].end, words_[end].end), "]"}});
         put(Tok::ListOpen, words_[i].begin, words_[item].begin);
         out_.push_back(words_[item]);
         put(Tok::ListClose, words_[item].end, words_[end].end);
@@ -171,8 +171,7 @@ class Forms : WordChanges {
                 {span(words_[first].begin, words_[first].begin), whole ? "int" : "int("},
                 {gap, whole ? "" : ")"}};
             say(cast, "a number is converted by a call")
-                .help("write " + in_code(whole ? "int" + value : "int(" + value + ")"),
-                      std::move(edits));
+                .help(to_write(whole ? "int" + value : "int(" + value + ")"), std::move(edits));
         }
         drop(i, i + 2, i);
         return true;
@@ -193,7 +192,7 @@ class Forms : WordChanges {
             if (repeated) {
                 const std::string list = "[for i in 0.." + std::string(text(i + 5)) + " { " +
                                          std::string(text(i + 3)) + " }]";
-                d.help("write " + in_code(list), {{words(i, i + 6), list}});
+                d.help(to_write(list), {{words(i, i + 6), list}});
             } else
                 d.help("leave " + in_code("vec!") + " away", {{head, ""}});
             const bool first = words_[i].first_on_line;
@@ -249,7 +248,7 @@ class Forms : WordChanges {
         if (is_one_of(text(i), scopes)) {
             const Span path = span(words_[i].begin, words_[last - 1].end);
             say(path, "the mathematical functions need no module")
-                .help("write " + in_code(text(last)), {{span(path.begin, words_[last].begin), ""}});
+                .help(to_write(text(last)), {{span(path.begin, words_[last].begin), ""}});
             begin_change(i);
             put(Tok::Name, words_[last].begin, words_[last].end, words_[i].first_on_line);
             i = last;
@@ -361,7 +360,7 @@ class Forms : WordChanges {
         std::vector<Edit> edits{{head, braces ? let + " = [" : let}};
         if (braces) edits.push_back({words(close, close), "]"}); // `rs{0.2, 0.3}`
         say(head, "a name is bound with `let`")
-            .help("write " + in_code(let + (braces ? " = [ … ]" : " = …")), std::move(edits));
+            .help(to_write(let + (braces ? " = [ … ]" : " = …")), std::move(edits));
         begin_change(i);
         put(Tok::Let, words_[i].begin, words_[i].begin, words_[i].first_on_line);
         put(Tok::Name, words_[name].begin, words_[name].end);
@@ -381,8 +380,7 @@ class Forms : WordChanges {
     bool without_values(std::size_t &i, std::size_t name) {
         const Span head = words(i, name);
         const std::string let = "let " + std::string(text(name)) + " = []";
-        say(head, "a name is bound together with its value")
-            .help("write " + in_code(let), {{head, let}});
+        say(head, "a name is bound together with its value").help(to_write(let), {{head, let}});
         begin_change(i);
         put(Tok::Let, words_[i].begin, words_[i].begin, words_[i].first_on_line);
         out_.push_back(words_[name]);

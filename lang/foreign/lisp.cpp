@@ -198,8 +198,7 @@ bool ForeignSyntax::lisp_binding(Index open) {
     if (value.empty() || at != close)
         d.help("write " + in_code(head + " = …"));
     else
-        d.help("write " + in_code(head + " = " + value),
-               {{span(open, close), head + " = " + value}});
+        d.help(to_write(head + " = " + value), {{span(open, close), head + " = " + value}});
     return true;
 }
 
@@ -233,7 +232,7 @@ bool ForeignSyntax::lisp_let(Index open) {
     failed_ = close;
     Diagnostic &d = foreign(span(open, let), "a name is known to the end of its block");
     if (plain && written.find('\n') == std::string::npos)
-        d.help("write " + in_code(written), {{span(open, close), written}});
+        d.help(to_write(written), {{span(open, close), written}});
     else
         d.help("write `let r = 2`, and on the next line what uses it");
     return true;
@@ -250,7 +249,7 @@ bool ForeignSyntax::lisp_arrow(Index at) {
     if (written.empty())
         d.help("write `sphere(1).translate(x: 1)`");
     else
-        d.help("write " + in_code(written), {{span(open, match(open)), written}});
+        d.help(to_write(written), {{span(open, match(open)), written}});
     return true;
 }
 
@@ -276,7 +275,7 @@ bool ForeignSyntax::lisp_call(Index at) {
     if (is_one_of(before, {Tok::Number, Tok::Close, Tok::ListClose})) call = "(" + call + ")";
     Diagnostic &d = foreign(span(open, open + 1), "a call's name stands before its parentheses");
     if (!call.empty() && call != "()")
-        d.help("write " + in_code(call), {{span(open, match(open)), call}});
+        d.help(to_write(call), {{span(open, match(open)), call}});
     else if (open + 1 == inner)
         d.help("write " + in_code(std::string(text(inner)) + "(" + std::string(text(at)) + ")"));
     else

@@ -101,7 +101,7 @@ class Matches : WordChanges {
                 edits.push_back({span(end, end), " }"});
         }
         diagnostics_.add(Code::ForeignSyntax, words(i, i), "a choice is written with `if`")
-            .help("write " + in_code(told), std::move(edits));
+            .help(to_write(told), std::move(edits));
         i = close;
         return true;
     }

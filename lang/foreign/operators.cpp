@@ -74,7 +74,7 @@ bool ForeignSyntax::foreign_word_operator(Index at) {
     const Span place = negated ? span(at, at + 1) : span(at);
     const std::string ours(negated ? "!=" : row->ours);
     foreign(place, negated ? "inequality is written `!=`" : std::string(row->message))
-        .help("write " + in_code(ours), {{place, ours}});
+        .help(to_write(ours), {{place, ours}});
     return true;
 }
 
@@ -105,7 +105,7 @@ bool ForeignSyntax::foreign_comparison(Index at) {
     const Tok found = kind(at);
     const auto say = [&](Index last, const std::string &ours) {
         foreign(span(at, last), "this comparison is written " + in_code(ours))
-            .help("write " + in_code(ours), {{span(at, last), ours}});
+            .help(to_write(ours), {{span(at, last), ours}});
         return true;
     };
     if (at == 0 || !ends_operand(kind(at - 1))) return false;
@@ -130,7 +130,7 @@ bool ForeignSyntax::foreign_comparison(Index at) {
     }
     const bool whole = is_one_of(kind(at - 2), {Tok::If, Tok::While, Tok::Open, Tok::Assign});
     if (plain && whole && !written.empty())
-        d.help("write " + in_code(written), {{span(at - 1, close), written}});
+        d.help(to_write(written), {{span(at - 1, close), written}});
     else
         d.help("compare with each: `n == 1 or n == 2`");
     return true;
@@ -144,7 +144,7 @@ bool ForeignSyntax::foreign_scope(Index colon) {
     const std::string_view module = text(colon - 1);
     if (is_foreign_module(module) || module == "std") {
         foreign(span(colon - 1, colon + 1), "the mathematical functions need no module")
-            .help("write " + in_code(text(colon + 2)), {{span(colon - 1, colon + 1), ""}});
+            .help(to_write(text(colon + 2)), {{span(colon - 1, colon + 1), ""}});
         return true;
     }
     for (Index i = 0; may_look_far() && i + 1 < colon;
@@ -169,7 +169,7 @@ bool ForeignSyntax::foreign_percent(Index at) {
     if (!value) return false;
     const std::string share = format_shortest(*value / 100);
     foreign(span(at - 2, at - 1), "a share is a number, of which 1 is the whole")
-        .help("write " + in_code(share), {{span(at - 2, at - 1), share}});
+        .help(to_write(share), {{span(at - 2, at - 1), share}});
     return true;
 }
 
@@ -201,7 +201,7 @@ bool ForeignSyntax::keyword_as_name(Index at) {
         .add(Code::SyntaxError, span(at),
              in_code(text(at)) + " is a word of the language, "
                                  "and no name")
-        .help("write " + in_code(name), std::move(edits));
+        .help(to_write(name), std::move(edits));
     return true;
 }
 
@@ -296,7 +296,7 @@ bool ForeignSyntax::foreign_product(Index at) {
     if (text(at) == "step" && is_one_of(kind(at + 1), {Tok::Number, Tok::Name})) return false;
     const std::string product = std::string(text(at - 1)) + " * " + std::string(text(at));
     diagnostics_.add(Code::SyntaxError, span(at - 1, at), "a product is written with `*`")
-        .help("write " + in_code(product), {{{id_, token(at - 1).end, token(at).begin}, " * "}});
+        .help(to_write(product), {{{id_, token(at - 1).end, token(at).begin}, " * "}});
     return true;
 }
 
@@ -314,8 +314,8 @@ bool ForeignSyntax::juxtaposed_arguments(Index at) {
         while (!ends_statement(past)) past = match(past) > past ? match(past) + 1 : past + 1;
         failed_ = past;
         foreign(span(at - 1, at), "a call's arguments stand in parentheses")
-            .help("write " + in_code(std::string(text(at - 1)) + "(" +
-                                     std::string(text(token(at).begin, token(past - 1).end)) + ")"),
+            .help(to_write(std::string(text(at - 1)) + "(" +
+                           std::string(text(token(at).begin, token(past - 1).end)) + ")"),
                   {{{id_, token(at - 1).end, token(at).begin}, "("},
                    {{id_, token(past - 1).end, token(past - 1).end}, ")"}});
         return true;
@@ -331,7 +331,7 @@ bool ForeignSyntax::juxtaposed_arguments(Index at) {
     if (names_alone || (kind(past) == Tok::Open && kind(past - 1) == Tok::Name)) return false;
     edits.push_back({{id_, token(past - 1).end, token(past - 1).end}, ")"});
     foreign(span(at - 1, past - 1), "a call's arguments stand in parentheses")
-        .help("write " + in_code(call + ")"), std::move(edits));
+        .help(to_write(call + ")"), std::move(edits));
     return true;
 }
 

@@ -136,7 +136,7 @@ bool ForeignSyntax::named_record(Index brace) {
             diagnostics_.withdraw(Code::ForeignSyntax, span(i));
     foreign(call ? span(brace - 1, close) : span(brace),
             "there are no records: each part is a name of its own")
-        .help("write " + in_code(lets), std::move(edits));
+        .help(to_write(lets), std::move(edits));
     return true;
 }
 

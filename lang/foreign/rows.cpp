@@ -73,7 +73,7 @@ bool ForeignSyntax::list_spread(Index at) {
     if (lists.size() > 1) joined = "concat(" + joined + ")";
     failed_ = close;
     foreign(span(at), "a list is not spread out: lists are joined by `concat`")
-        .help("write " + in_code(joined), {{span(open, close), joined}});
+        .help(to_write(joined), {{span(open, close), joined}});
     return true;
 }
 
@@ -136,7 +136,7 @@ bool ForeignSyntax::curv_slider(Index first) {
         failed_ = i;
     }
     foreign(span(first), "a parameter is declared with `param`")
-        .help("write " + in_code(told), std::move(edits));
+        .help(to_write(told), std::move(edits));
     return true;
 }
 
@@ -189,7 +189,7 @@ bool ForeignSyntax::call_of_row(Index open) {
     if (!commas) return false;
     edits.push_back({{id_, token(close).end, token(close).end}, ")"});
     foreign(span(open - 1, open), "a call's arguments stand in parentheses")
-        .help("write " + in_code(std::string(text(open - 1)) + "([ … ])"), std::move(edits));
+        .help(to_write(std::string(text(open - 1)) + "([ … ])"), std::move(edits));
     return true;
 }
 
@@ -251,7 +251,7 @@ bool ForeignSyntax::applied_without_dot(Index at) {
         return false;
     const std::string call = "." + std::string(text(name)) + "(…)";
     foreign(span(at), "a function is applied by a dot")
-        .help("write " + in_code(call), {{{id_, token(at - 1).end, token(name).begin}, "."}});
+        .help(to_write(call), {{{id_, token(at - 1).end, token(name).begin}, "."}});
     return true;
 }
 

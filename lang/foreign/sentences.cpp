@@ -105,7 +105,7 @@ bool ForeignSyntax::arguments_by_space(Index first) {
     const std::string written = std::string(text(first)) + "(" + arguments + ")";
     failed_ = at;
     foreign(span(first, first + 1), "a call's arguments stand in parentheses, named with `:`")
-        .help("write " + in_code(written), {{span(first, at - 1), written}});
+        .help(to_write(written), {{span(first, at - 1), written}});
     return true;
 }
 

@@ -224,7 +224,7 @@ bool ForeignSyntax::foreign_solid(Index first) {
     failed_ = close;
     Diagnostic &d = foreign(span(first), std::string(solid.told));
     if (!solid.lost.empty()) d.note(std::string(solid.lost));
-    d.help("write " + in_code(solid.text), {{span(first, close), solid.text}});
+    d.help(to_write(solid.text), {{span(first, close), solid.text}});
     return true;
 }
 

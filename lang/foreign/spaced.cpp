@@ -235,7 +235,7 @@ bool ForeignSyntax::spaced_statement(Index at) {
     const Index shown = kind(at - 1) == Tok::Name ? at - 1 : at;
     foreign(span(shown, at), "a call's arguments stand in parentheses, and what is done to a shape "
                              "behind a `.`")
-        .help("write " + in_code(value), {{span(first, past - 1), value}});
+        .help(to_write(value), {{span(first, past - 1), value}});
     return true;
 }
 

@@ -47,7 +47,7 @@ bool ForeignSyntax::setting_assigned(std::string_view name, Span target, Span va
     const std::string call =
         std::string(name) + "(" + std::string(text(value.begin, value.end)) + ")";
     foreign(target, "the scene's settings are calls")
-        .help("write " + in_code(call),
+        .help(to_write(call),
               {{{id_, target.end, value.begin}, "("}, {{id_, value.end, value.end}, ")"}});
     return true;
 }
@@ -90,7 +90,7 @@ bool ForeignSyntax::print_stream(Index first) {
     }
     const std::string call = "print(" + shown + ")";
     foreign({id_, begin, token(out).end}, "a value is shown by `print`")
-        .help("write " + in_code(call), {{{id_, begin, last}, call}});
+        .help(to_write(call), {{{id_, begin, last}, call}});
     return true;
 }
 
@@ -204,8 +204,7 @@ bool ForeignSyntax::words_of_range(Index first, Index at) {
     if (ends.size() != 2) return false;
     const std::string range = " in " + ends[0] + ".." + ends[1];
     foreign(span(at), "a param's range stands behind `in`")
-        .help("write " + in_code(range.substr(1)),
-              {{{id_, token(at - 1).end, token(label - 1).end}, range}});
+        .help(to_write(range.substr(1)), {{{id_, token(at - 1).end, token(label - 1).end}, range}});
     lost_.push_back(first + 1);
     return true;
 }
@@ -231,11 +230,10 @@ bool ForeignSyntax::range_in_parentheses(Index at) {
     const std::string value = valued ? " = …" : " = " + numbers[0];
     failed_ = end;
     if (valued)
-        d.help("write " + in_code("param " + name + value + range),
+        d.help(to_write("param " + name + value + range),
                {{span(at, close), ""}, {{id_, token(end - 1).end, token(end - 1).end}, range}});
     else
-        d.help("write " + in_code("param " + name + value + range),
-               {{span(at, close), value + range}});
+        d.help(to_write("param " + name + value + range), {{span(at, close), value + range}});
     return true;
 }
 
@@ -277,7 +275,7 @@ bool ForeignSyntax::counted_block(Index first, Index at) {
     const std::string head = "for i in 0.." + std::string(text(count));
     failed_ = match(brace) > brace ? match(brace) : brace;
     foreign(span(first, brace - 1), "a loop is written `for i in 0..8 { … }`")
-        .help("write " + in_code(head + " { … }"), {{span(first, brace - 1), head}});
+        .help(to_write(head + " { … }"), {{span(first, brace - 1), head}});
     return true;
 }
 
@@ -377,7 +375,7 @@ bool ForeignSyntax::loop_of_tuple(Index open, Diagnostic &d) {
     const std::string list(text(token(first).begin, token(body - 1).end));
     const std::string head = loop_of_parts(open, list, lets);
     if (!head.empty())
-        d.help("write " + in_code("for " + head + " { … }"),
+        d.help(to_write("for " + head + " { … }"),
                {{span(open, body - 1), head},
                 {{id_, token(body + 1).begin, token(body + 1).begin}, lets}});
     return true;
@@ -414,7 +412,7 @@ bool ForeignSyntax::head_of_loop(Index at) {
                               std::string(text(token(at + 1).begin, token(body - 1).end)) + ")";
     failed_ = match(body);
     foreign(span(at), "numbers in steps are a `range`")
-        .help("write " + in_code(range), {{span(in + 1, body - 1), range}});
+        .help(to_write(range), {{span(in + 1, body - 1), range}});
     return true;
 }
 
@@ -435,7 +433,7 @@ bool ForeignSyntax::python_import(Index first) {
     failed_ = end;
     const Index past = statement_end(first);
     foreign(span(first), "`import` brings all names of a file")
-        .help("write " + in_code(written), {{span(first, past - 1), written}});
+        .help(to_write(written), {{span(first, past - 1), written}});
     return true;
 }
 

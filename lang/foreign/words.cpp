@@ -404,7 +404,7 @@ void ForeignSyntax::foreign_choice(Index start, Index at) {
     const std::string written = "if " + part(at + 1, other) + " { " + part(start, at) +
                                 " } else { " + part(other + 1, end) + " }";
     if (written.find('\n') == std::string::npos)
-        d.help("write " + in_code(written), {{span(start, end - 1), written}});
+        d.help(to_write(written), {{span(start, end - 1), written}});
 }
 
 // Where the value begins that stands before a token: behind a `=`, a bracket or a comma.
