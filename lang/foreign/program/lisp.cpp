@@ -2,6 +2,7 @@
 #include "lang/foreign/program/program.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace fathom::lang::program {
@@ -28,7 +29,10 @@ class LispReader {
     bool skip() { // blanks and comments; false at the end
         while (at_ < text_.size()) {
             const char c = text_[at_];
-            if (c == ';' || c == '#')
+            const bool vector = c == '#' && at_ + 1 < text_.size() && text_[at_ + 1] == '[';
+            if (vector) // Scheme's `#[1 2 3]`
+                ++at_;
+            else if (c == ';' || c == '#')
                 remark();
             else if (c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == ',')
                 ++at_;
@@ -82,6 +86,12 @@ class LispReader {
             out.parts.push_back(c == '(' || c == '[' ? form() : atom());
         }
         --depth_;
+        constexpr std::array<std::string_view, 4> vectors{"list", "vec", "vec2", "vec3"};
+        if (out.text == "(" && out.parts.size() > 1 && out.parts[0].is == Is::Name &&
+            std::ranges::find(vectors, out.parts[0].text) != vectors.end()) {
+            out.parts.erase(out.parts.begin());
+            out.text = "[";
+        }
         return out;
     }
 

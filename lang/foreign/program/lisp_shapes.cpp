@@ -134,6 +134,9 @@ std::optional<Written> Writer::lisp_number(const std::string &head, const Node &
     constexpr std::array<std::string_view, 16> same = {
         "sin", "cos", "tan", "abs",  "sqrt",  "min",  "max",   "mod",
         "exp", "log", "pow", "atan", "floor", "ceil", "round", "length"};
+    if (head == "sin+" || head == "cos+") // Bauble's, from 0 to 1
+        return Written{"0.5 + 0.5 * " + call_text(head.substr(0, 3), {lisp_text(n.parts[1])}), 8,
+                       Kind::Number};
     if (head == "square") {
         const Written w = lisp(n.parts[1]);
         return Written{wrapped(w, as_call) + " ^ 2", 11, Kind::Number};
@@ -207,7 +210,8 @@ std::optional<Written> Writer::lisp_solid(const std::string &name, const Form &f
         if (key != "r") return std::nullopt;
     const std::size_t count = f.rest.size();
     if (count == 0 && name != "half-space") return std::nullopt;
-    if (name == "sphere" && count <= 2) return solid_of_lisp(put("sphere(" + at(0) + ")", 1));
+    if ((name == "sphere" || name == "ball") && count <= 2)
+        return solid_of_lisp(put("sphere(" + at(0) + ")", 1));
     if ((name == "box" || name == "box-exact" || name == "box-mitered") && count == 2 &&
         is_vector(*f.rest[0]) && is_vector(*f.rest[1]))
         return solid_of_lisp(between_corners("box", lisp(*f.rest[0]), lisp(*f.rest[1])));
@@ -226,6 +230,9 @@ std::optional<Written> Writer::lisp_solid(const std::string &name, const Form &f
                                        axis));
         return solid_of_lisp(along("cylinder(" + r + ", " + h + ")", axis));
     }
+    if (name == "cone" && count == 2 && axis.size() == 1) // Bauble: up from its foot
+        return solid_of_lisp("cone(" + at(0) + ", " + at(1) + ").translate(y: " + halved(at(1)) +
+                             ")" + (axis == "Y" ? "" : ".orient(Y, " + axis + ")"));
     if ((name == "cylinder" || name == "cylinder-z" || name == "cone-z") && axis.empty() &&
         count >= 2 && count <= 3) { // libfive: from its foot up z
         const std::string h = at(1);
@@ -270,6 +277,13 @@ std::optional<Written> Writer::lisp_change(const std::string &name, const Node &
     const Node &color_part = n.parts.back();
     const bool by_name = name == "color" && n.parts.size() == 3 && color_part.is == Is::Name &&
                          !find(color_part.text);
+    if (by_name && (color_part.text == "normal+" || color_part.text == "normal")) {
+        const Written painted = lisp(n.parts[1]);
+        return Written{wrapped(painted, as_call) + (color_part.text == "normal"
+                                                        ? ".paint((p, n) => n)"
+                                                        : ".paint((p, n) => 0.5 + 0.5 * n)"),
+                       as_call, painted.kind};
+    }
     if (by_name) { // `color red`
         const Written painted = lisp(n.parts[1]);
         return Written{wrapped(painted, as_call) + ".paint(" + color_part.text + ")", as_call,
