@@ -66,19 +66,26 @@ Closed closed(ir::Graph &graph, const Ranges &ranges, NodeId condition) {
     return out;
 }
 
-// The same condition with orders that may be missed by a grain; what must not be equal must not.
-NodeId nearly(ir::Graph &graph, NodeId condition) {
+enum class Orders { All, Inclusive };
+
+// The same condition with orders that may be missed by a grain, all or those that hold of equal
+// numbers, too; what must not be equal must not.
+NodeId nearly(ir::Graph &graph, NodeId condition, Orders which) {
     const ir::Node node = graph[condition];
     const auto arg = [&](int i) { return graph.arg(condition, i); };
-    const auto ordered = [&](NodeId less, NodeId more) {
-        if (graph[less].type != ir::Type::Float) return condition;
+    const auto ordered = [&](NodeId less, NodeId more, bool inclusive) {
+        if (graph[less].type != ir::Type::Float || (which == Orders::Inclusive && !inclusive))
+            return condition;
         return graph.make(Op::LessEqual, {less, graph.add(more, graph.number(grain))});
     };
-    if (node.op == Op::Less || node.op == Op::LessEqual) return ordered(arg(0), arg(1));
-    if (node.op == Op::And || node.op == Op::Or)
-        return graph.make(node.op, {nearly(graph, arg(0)), nearly(graph, arg(1))});
+    if (node.op == Op::Less || node.op == Op::LessEqual)
+        return ordered(arg(0), arg(1), node.op == Op::LessEqual);
+    if (node.op == Op::And || node.op == Op::Or) {
+        const NodeId one = nearly(graph, arg(0), which), other = nearly(graph, arg(1), which);
+        return graph.make(node.op, {one, other});
+    }
     if (node.op == Op::Not && (graph[arg(0)].op == Op::Less || graph[arg(0)].op == Op::LessEqual))
-        return ordered(graph.arg(arg(0), 1), graph.arg(arg(0), 0));
+        return ordered(graph.arg(arg(0), 1), graph.arg(arg(0), 0), graph[arg(0)].op == Op::Less);
     return condition;
 }
 
@@ -177,11 +184,12 @@ void Prover::test_conditions() {
                    always(flattening, ranges, in_differences(graph, node), over.unknowns, search);
         };
         search.ended = false;
-        if (holds(over.holds)) continue;
+        // `0.5 + 0.5 * sin(time)` is 0 at least, and by its rounding a little less.
+        if (holds(over.holds) || holds(nearly(graph, over.holds, Orders::Inclusive))) continue;
         const bool by_time =
             std::ranges::any_of(over.unknowns, [](const Unknown &one) { return one.time; });
         const std::string range = by_time ? "of the time that is covered " : "of a param's range ";
-        if (holds(nearly(graph, over.holds)))
+        if (holds(nearly(graph, over.holds, Orders::All)))
             diagnostics
                 .add(Code::DegenerateRange, condition.at, "at an end " + range + condition.wanted)
                 .help(by_time ? "keep the argument off its limit, as with `0.01 + time`"

@@ -339,6 +339,16 @@ static std::string outside_range(const Interpreter &ev, const File &ast, const l
     return message;
 }
 
+// Whether an end of a range is a whole number; what it is is told elsewhere.
+static bool is_whole(Interpreter &ev, const File &ast, lang::ExprId id, std::uint32_t frame) {
+    ++ev.quiet;
+    const std::size_t errors = std::exchange(ev.quiet_errors, 0);
+    const ValueKind kind = eval(ev, ast, id, frame).kind;
+    ev.quiet_errors = errors;
+    --ev.quiet;
+    return kind != ValueKind::Float && kind != ValueKind::Field;
+}
+
 void declare_param(Interpreter &ev, const File &ast, const lang::Param &param,
                    std::uint32_t frame) {
     ir::Param p;
@@ -381,13 +391,9 @@ void declare_param(Interpreter &ev, const File &ast, const lang::Param &param,
     if (p.type == ir::Type::Bool || p.is_color) p.lo = {0, 0, 0, 0}, p.hi = {1, 1, 1, 1};
     if (param.low && param.high) {
         // a whole number with a range of floats is a float
-        if (p.type == ir::Type::Int) {
-            auto whole = [&](lang::ExprId id) {
-                auto *n = std::get_if<lang::Number>(&ast.exprs[id].kind);
-                return !n || n->is_int;
-            };
-            if (!whole(*param.low) || !whole(*param.high)) p.type = ir::Type::Float;
-        }
+        if (p.type == ir::Type::Int && !param.type &&
+            (!is_whole(ev, ast, *param.low, frame) || !is_whole(ev, ast, *param.high, frame)))
+            p.type = ir::Type::Float;
         if (p.type == ir::Type::Bool || p.is_color) {
             report_needless_range(ev, ast, param);
             return fail();

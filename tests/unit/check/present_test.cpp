@@ -226,3 +226,31 @@ TEST_CASE("a param whose range is refused, and its present value not, builds the
     CHECK_FALSE(asked.good());
     CHECK(codes(asked).front() == Code::LipschitzUnbounded);
 }
+
+TEST_CASE(
+    "a whole number whose range ends at none is a float, and stays whole where that is said") {
+    const auto type_of = [](const std::string &param) {
+        const driver::Compilation made = driver::compile_text(
+            "scene.sdf", "let whole = 4\nlet part = 2.5\n" + param + "\nsphere(k + 20)\n", ".", {});
+        return made.good() ? std::string(ir::type_name(made.scene.params[0].type)) : "refused";
+    };
+    for (const char *range : {"0..tau", "-pi..pi", "-0.5..1", "0..part", "0..whole / 8", "-1..0.5"})
+        CHECK(type_of(std::string("param k = 0 in ") + range) == "float");
+    for (const char *range : {"-3..3", "0..whole", "0..len([1, 2])"})
+        CHECK(type_of(std::string("param k = 0 in ") + range) == "int");
+    CHECK(type_of("param k: int = 0 in 0..7") == "int");
+    CHECK(type_of("param k: int = 0 in 0..tau") == "refused");
+    CHECK(type_of("param k: float = 0 in 0..7") == "float");
+}
+
+TEST_CASE(
+    "a blend's width that is 0 at the least is no degenerate range; a radius that is, is one") {
+    const auto reports = [](const std::string &text) {
+        return driver::compile_text("scene.sdf", text, ".", {}).diagnostics.items().size();
+    };
+    for (const char *k : {"0.5 + 0.5 * sin(time)", "0.25 * (1 + cos(3 * time))", "1 - sin(a)"})
+        CHECK(reports("param a = 0 in 0..tau\nsmooth_union(" + std::string(k) +
+                      ", sphere(1), sphere(1).translate(x: a))") == 0);
+    CHECK(reports("sphere(1 + sin(time))") == 1);
+    CHECK(reports("smooth_union(0.4 + 0.5 * sin(time), sphere(1), box(1))") == 1);
+}
