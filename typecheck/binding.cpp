@@ -161,6 +161,12 @@ static void report_missing(Interpreter &ev, std::string_view name, std::span<con
         const Span before{args[0].span.source, args[0].span.begin, args[0].span.begin};
         d.help("a range begins somewhere: `range(0, n)`, or `0..n`", {{before, "0, "}});
     }
+    if (name == "rgb" && args.size() == 1 && is_numeric(args[0].value) &&
+        ir::components(numeric_type(ev, args[0].value)) == 3) {
+        const Span of = args[0].span;
+        d.help("a vector of three numbers is a color already",
+               {{{call.source, call.begin, of.begin}, ""}, {{call.source, of.end, call.end}, ""}});
+    }
     if (!d.fix && args.empty()) help_with_second_call(ev, d, call);
     if (!d.fix)
         if (const std::string example = example_of(ev, name, formals); !example.empty())
