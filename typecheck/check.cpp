@@ -239,6 +239,60 @@ void add_fields(Interpreter &ev, std::uint32_t frame) {
     }
 }
 
+// The last function of the file that gives a number for a point, by what is written of it.
+const lang::Function *last_field(const File &ast) {
+    const lang::Function *out = nullptr;
+    for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
+        const auto *declared = std::get_if<lang::FunctionDecl>(&s.kind);
+        if (!declared) continue;
+        const lang::Function &f = ast.functions[declared->function];
+        if (f.parameters.size() != 1 || !f.result || f.result->named != lang::TypeName::Float)
+            continue;
+        const lang::TypeExpr *point = f.parameters[0].type;
+        if (point && point->named == lang::TypeName::Vec3) out = &f;
+    }
+    return out;
+}
+
+// A file without a shape: what would draw what it declares.
+void report_no_shape(Interpreter &ev, const File &ast, std::uint32_t frame) {
+    bool declares = false, could = false; // … a shape, at other values
+    std::string_view shape;
+    for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
+        declares = declares || std::holds_alternative<lang::FunctionDecl>(s.kind);
+        const auto *value = std::get_if<lang::ExprStmt>(&s.kind);
+        could = could || std::holds_alternative<lang::For>(s.kind) ||
+                std::holds_alternative<lang::While>(s.kind) ||
+                (value && std::holds_alternative<lang::If>(ast.exprs[value->value].kind));
+        const auto *let = std::get_if<lang::Let>(&s.kind);
+        if (!let) continue;
+        declares = true;
+        const auto found = find_name(ev, frame, symbol_of(ast, let->name));
+        if (!found) continue;
+        if (ev.frames[found->frame].bindings[found->slot].value.kind == ValueKind::Shape)
+            shape = let->name.text;
+    }
+    const Span begin{ast.source, 0, 0};
+    if (!declares && !could) {
+        report(ev, Code::EmptyScene, begin,
+               "this file makes no shape, and declares nothing that another could import")
+            .help("the smallest scene is `sphere(1)`");
+        return;
+    }
+    Diagnostic &d =
+        report(ev, Code::NothingDrawn, begin, "this file makes no shape, so nothing is drawn");
+    const auto size = static_cast<std::uint32_t>(ev.sources[ast.source].text.size());
+    const auto add = [&](const std::string &line) {
+        const bool ended = ev.sources[ast.source].text.ends_with('\n');
+        d.help(fmt::format("write `{}` on a line of its own, unless another file imports it", line),
+               {{{ast.source, size, size}, (ended ? "" : "\n") + line + "\n"}});
+    };
+    if (!shape.empty())
+        add(std::string(shape));
+    else if (const lang::Function *field = last_field(ast))
+        add(fmt::format("implicit({}, within: ball(3))", field->name->text));
+}
+
 void build_scene(Interpreter &ev, const std::vector<Contribution> &contributions, const File &ast,
                  std::uint32_t frame) {
     ir::Scene &scene = ev.scene;
@@ -254,15 +308,7 @@ void build_scene(Interpreter &ev, const std::vector<Contribution> &contributions
             return ev.only_shapes.count(t.shape.index) == 0;
         });
     }
-    bool declares = false;
-    for (const lang::Stmt &s : ast.blocks[ast.root].stmts)
-        declares = declares || std::holds_alternative<lang::Let>(s.kind) ||
-                   std::holds_alternative<lang::FunctionDecl>(s.kind);
-    if (shapes.empty() && !declares && !ev.diagnostics.has_errors()) {
-        report(ev, Code::EmptyScene, {ast.source, 0, 0},
-               "this file makes no shape, and declares nothing that another could import")
-            .help("the smallest scene is `sphere(1)`");
-    }
+    if (shapes.empty() && !ev.diagnostics.has_errors()) report_no_shape(ev, ast, frame);
     scene.root = unite(ev, std::move(shapes), 3, ast.blocks[ast.root].span);
     add_fields(ev, frame);
     demand_ranges(ev);
