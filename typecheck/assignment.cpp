@@ -191,6 +191,14 @@ static void help_with_let(const Interpreter &ev, const File &ast, const lang::As
                "new one");
 }
 
+// The function that has its parameter declared there, or none.
+static const lang::Function *function_of_parameter(const File &ast, Span declared) {
+    for (const lang::Function &f : ast.functions)
+        for (const lang::Parameter &p : f.parameters)
+            if (p.name.span == declared) return &f;
+    return nullptr;
+}
+
 void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span place,
                 std::uint32_t frame) {
     std::vector<Accessor> path;
@@ -241,26 +249,29 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
             declared.source && declared.begin >= 4 &&
             text(ev.sources, {declared.source, declared.begin - 4, declared.begin}) == "let ";
         const bool in_body = !ev.frames[found->frame].index;
-        const bool is_argument = in_body && !by_let && ev.frames[frame].parent == found->frame;
+        const lang::Function *taken_by = in_body ? function_of_parameter(ast, declared) : nullptr;
+        const bool is_argument = taken_by != nullptr;
         Diagnostic &d =
             report(ev, Code::NotAssignable, base.span,
                    is_argument ? fmt::format("`{}` is an argument, and does not change", name->text)
                                : fmt::format("`{}` was declared with `let` and does not change",
                                              name->text));
         if (binding.declared.source) d.label(binding.declared, "declared here");
-        const Span before{place.source, place.begin, place.begin};
-        if (is_argument)
+        if (is_argument) {
+            const Span first = ast.blocks[taken_by->body].stmts.front().span;
             d.help(fmt::format("an argument is changed in a copy: `var {0} = {0}`", name->text),
-                   {{before, fmt::format("var {0} = {0}; ", name->text)}});
-        else if (by_let && in_body)
+                   {{{first.source, first.begin, first.begin},
+                     fmt::format("var {0} = {0}; ", name->text)}});
+        } else if (by_let && in_body)
             d.help(fmt::format("write `var {}` where it is declared", name->text),
                    {{{declared.source, declared.begin - 4, declared.begin - 1}, "var"}});
         else if (ev.calls.empty() && ev.in_field == 0) {
             help_with_let(ev, ast, node, d, name->text, path, binding.value);
         } else
             d.help("declare it with `var` inside the function");
-        if (!is_argument) assign(ev, found->frame, found->slot, poison()); // one cause, one report
-        return;
+        // One cause, one report: an argument goes on as the copy that it is told to be.
+        if (!is_argument) return assign(ev, found->frame, found->slot, poison());
+        ev.frames[found->frame].bindings[found->slot].is_var = true;
     }
     Value old = binding.value;
     if (is_poison(value)) return assign(ev, found->frame, found->slot, value);

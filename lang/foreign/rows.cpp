@@ -160,7 +160,9 @@ std::vector<Edit> ForeignSyntax::further_names(Index first, Index from) {
         if (kind(i) != Tok::Comma || kind(i + 1) != Tok::Name || i < first) continue;
         lost_.push_back(i + 1);
         if (kind(i + 2) != Tok::Assign) continue;
-        edits.push_back({span(i), in_function_ && is_assigned_after(i + 1) ? "; var" : "; let"});
+        const bool changes = in_function_ && is_assigned_after(i + 1);
+        edits.push_back(
+            {span(i), std::string(changes ? "; var" : "; let") + (touch(i, i + 1) ? " " : "")});
     }
     return edits;
 }
