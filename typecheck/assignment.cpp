@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 namespace fathom::typecheck {
@@ -305,6 +307,29 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
     }
     value.ints = false;
     assign(ev, found->frame, found->slot, value);
+}
+
+void tell_dropped_value(Interpreter &ev, const File &ast, lang::ExprId id, const Value &v) {
+    const auto *call = std::get_if<lang::Call>(&ast.exprs[id].kind);
+    const auto *callee = call ? std::get_if<lang::Name>(&ast.exprs[call->callee].kind) : nullptr;
+    const bool counts = is_numeric(v) || v.kind == ValueKind::List;
+    const bool choice = std::holds_alternative<lang::If>(ast.exprs[id].kind);
+    if (!counts || choice || ev.modules[ev.current_module].library ||
+        (callee && callee->text == "print"))
+        return;
+    Diagnostic &d = report(ev, Code::UnusedValue, ast.exprs[id].span,
+                           "this value is dropped: a function changes nothing outside of it");
+    if (call && !call->arguments.empty()) {
+        const std::string given = source_text(ev, ast.exprs[call->arguments[0].value].span);
+        const Span at = ast.exprs[id].span;
+        const bool place = !given.empty() && std::isalpha(static_cast<unsigned char>(given[0])) &&
+                           std::ranges::all_of(given, [](unsigned char c) {
+                               return std::isalnum(c) || c == '_' || c == '.';
+                           });
+        if (place)
+            d.help(fmt::format("assign it, as in `{} = {}`", given, source_text(ev, at)),
+                   {{{at.source, at.begin, at.begin}, given + " = "}});
+    }
 }
 
 } // namespace fathom::typecheck

@@ -228,4 +228,7 @@ bool report_unfinished(Interpreter &ev, const Closure &c, const lang::Function &
 
 // Reports a `var` outside of functions.
 void report_var_at_top(Interpreter &ev, const File &ast, const lang::Var &var, Span place);
+// Of a statement within a user's function that is not the last: `fold(p, 2);` does nothing.
+void tell_dropped_value(Interpreter &ev, const File &ast, lang::ExprId id, const Value &v);
+
 } // namespace fathom::typecheck

@@ -126,7 +126,10 @@ static Exit run_one(Interpreter &ev, const File &ast, const lang::Stmt &stmt, bo
             exit.returned = boolean(true);
             exit.value = poison();
         }
-        if (!is_last) dropped(ev, last, stmt.span), last = unit();
+        if (!is_last) {
+            tell_dropped_value(ev, ast, e->value, dropped(ev, last, stmt.span));
+            last = unit();
+        }
     } else if (auto *f = std::get_if<lang::For>(&stmt.kind)) {
         exit = run_for(ev, ast, *f, frame, stmt.span).exit;
     } else if (auto *w = std::get_if<lang::While>(&stmt.kind)) {

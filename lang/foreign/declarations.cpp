@@ -93,32 +93,6 @@ std::string ForeignSyntax::parameters_text(Index open) const {
     return out;
 }
 
-// Is the name that is declared here given another value in the rest of its block?
-bool ForeignSyntax::is_assigned_after(Index name) const {
-    constexpr std::array changes{Tok::Assign,     Tok::PlusAssign,  Tok::MinusAssign,
-                                 Tok::StarAssign, Tok::SlashAssign, Tok::OtherAssign,
-                                 Tok::PlusPlus,   Tok::MinusMinus};
-    const Index open = enclosing(name), partner = match(open),
-                end = partner > open ? partner : Index(tokens_.tokens.size());
-    for (Index i = name + 1; i < end; ++i) {
-        if (kind(i) != Tok::Name || text(i) != text(name)) continue;
-        const Tok before = kind(i - 1); // a named argument, another declaration
-        if (before == Tok::Open || before == Tok::Comma || before == Tok::Name) continue;
-        if (before == Tok::Let || before == Tok::Var || before == Tok::Dot) continue;
-        Index at = i + 1;
-        while (kind(at) == Tok::Dot && kind(at + 1) == Tok::Name) at += 2;
-        if (std::ranges::find(changes, kind(at)) != changes.end()) return true;
-    }
-    return false;
-}
-
-// The edit that takes a statement away, with its `;`.
-Edit ForeignSyntax::without_statement(Index first) const {
-    const Index end = statement_end(first);
-    const bool sign = kind(end) == Tok::End && text(end) == ";";
-    return {{id_, token(first).begin, token(sign ? end : end - 1).end}, ""};
-}
-
 // -- parameters ----------------------------------------------------------------------------------
 
 // `uniform float k = 0.5`, `slider r = 1 in 0..2`: a `param`, whose name stands at `name`.
@@ -296,7 +270,9 @@ void ForeignSyntax::foreign_function(Index first, Index name, bool has_type) {
     } else if (has_type && !is_their_own(text(name - 1)))
         head += " -> " + std::string(our_type(text(name - 1)));
     module_head(first, after, head);
+    const std::vector<Edit> calls = returned_instead(name, after, head);
     std::vector<Edit> edits{{span(first, after - 1), head}};
+    edits.insert(edits.end(), calls.begin(), calls.end());
     if (kind(after) == Tok::End && kind(after + 1) == Tok::StrayBrace && text(after) != ";") {
         edits.push_back({{id_, token(after - 1).end, token(after + 1).end}, " {"});
         failed_ = after + 1;
@@ -315,7 +291,9 @@ void ForeignSyntax::foreign_function(Index first, Index name, bool has_type) {
         edits.push_back({{id_, end, end}, "\n" + shape});
         shape = ", and the shape of this field, " + in_code(shape);
     }
-    note_changed(open, d.help("write " + in_code(head) + shape, std::move(edits)));
+    if (!calls.empty()) shape += ", which gives what it changed, and assign it";
+    d.help("write " + in_code(head) + shape, std::move(edits));
+    if (calls.empty()) note_changed(open, d);
 }
 
 // -- all -----------------------------------------------------------------------------------------

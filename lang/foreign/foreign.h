@@ -144,6 +144,12 @@ class ForeignSyntax : protected TokenReading {
     bool foreign_in(Index at);
     void changed_parameter(Index word, Index type);
     void note_changed(Index open, Diagnostic &d) const;
+    struct Changed {
+        std::size_t place; // among the parameters
+        Index type, name;
+    };
+    std::optional<Changed> changed_by(Index open) const;
+    std::vector<Edit> returned_instead(Index name, Index body, std::string &head) const;
     bool foreign_function_body(Index at);
     bool foreign_instead(Index at, std::string message, const std::string &replacement);
     bool foreign_loop(Index at);

@@ -448,13 +448,30 @@ bool ForeignSyntax::of_other_program(Index first) {
     return true;
 }
 
-// For GLSL's `void f(inout vec2 p, out float d)`, whose parameters begin at a `(`.
-void ForeignSyntax::note_changed(Index open, Diagnostic &d) const {
-    bool changes = false;
-    for (Index i = open + 1; i < match(open); ++i)
-        changes = changes || ((text(i) == "out" || text(i) == "inout") &&
-                              is_one_of(kind(i - 1), {Tok::Open, Tok::Comma}));
-    if (changes) d.note(std::string(changes_nothing));
+// Is the name that is declared here given another value in the rest of its block?
+bool ForeignSyntax::is_assigned_after(Index name) const {
+    constexpr std::array changes{Tok::Assign,     Tok::PlusAssign,  Tok::MinusAssign,
+                                 Tok::StarAssign, Tok::SlashAssign, Tok::OtherAssign,
+                                 Tok::PlusPlus,   Tok::MinusMinus};
+    const Index open = enclosing(name), partner = match(open),
+                end = partner > open ? partner : Index(tokens_.tokens.size());
+    for (Index i = name + 1; i < end; ++i) {
+        if (kind(i) != Tok::Name || text(i) != text(name)) continue;
+        const Tok before = kind(i - 1); // a named argument, another declaration
+        if (before == Tok::Open || before == Tok::Comma || before == Tok::Name) continue;
+        if (before == Tok::Let || before == Tok::Var || before == Tok::Dot) continue;
+        Index at = i + 1;
+        while (kind(at) == Tok::Dot && kind(at + 1) == Tok::Name) at += 2;
+        if (std::ranges::find(changes, kind(at)) != changes.end()) return true;
+    }
+    return false;
+}
+
+// The edit that takes a statement away, with its `;`.
+Edit ForeignSyntax::without_statement(Index first) const {
+    const Index end = statement_end(first);
+    const bool sign = kind(end) == Tok::End && text(end) == ";";
+    return {{id_, token(first).begin, token(sign ? end : end - 1).end}, ""};
 }
 
 } // namespace fathom::lang
