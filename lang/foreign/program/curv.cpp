@@ -71,10 +71,13 @@ class CurvReader : PieceReader {
         s.targets.push_back(node(Is::Name, name()));
         want("::");
         s.name = name();
-        if (s.name != "slider" && s.name != "int_slider" && s.name != "scale_slider")
+        const bool color = s.name == "colour_picker", check = s.name == "checkbox";
+        if (!color && !check && s.name != "slider" && s.name != "int_slider" &&
+            s.name != "scale_slider")
             throw Unsure{};
-        s.targets.push_back(atom());
+        if (!check && !(color && sees("="))) s.targets.push_back(atom());
         want("=");
+        if (check) takes("#"); // `#true`
         s.value = expression(0);
         return s;
     }
@@ -119,15 +122,15 @@ class CurvReader : PieceReader {
             want("(");
             Node test = expression(0);
             want(")");
-            Node yes = expression(1);
+            Node yes = expression(0);
             want("else");
-            return node(Is::Choice, "", {std::move(test), std::move(yes), expression(1)});
+            return node(Is::Choice, "", {std::move(test), std::move(yes), expression(0)});
         }
         if (now().kind == Word::Name && next().text == "->") {
             Node n = node(Is::Lambda, "");
             n.names.push_back(name());
             want("->");
-            n.parts.push_back(expression(1));
+            n.parts.push_back(expression(0));
             return n;
         }
         Node left = unary();

@@ -22,11 +22,11 @@ std::optional<std::string> axis_of(const std::string &name) {
     return std::nullopt;
 }
 
-constexpr std::array<std::string_view, 24> changes = {
-    "move",       "translate", "rotate",    "scale",         "stretch",   "reflect",
-    "reflect_x",  "reflect_y", "reflect_z", "colour",        "color",     "offset",
-    "shell",      "extrude",   "revolve",   "twist",         "repeat_x",  "repeat_xy",
-    "repeat_xyz", "repeat_y",  "repeat_z",  "repeat_radial", "lipschitz", "complement"};
+constexpr std::array<std::string_view, 26> changes = {
+    "move",          "translate", "rotate",     "scale",     "stretch",    "reflect",  "reflect_x",
+    "reflect_y",     "reflect_z", "colour",     "color",     "offset",     "shell",    "extrude",
+    "revolve",       "twist",     "repeat_x",   "repeat_xy", "repeat_xyz", "repeat_y", "repeat_z",
+    "repeat_radial", "lipschitz", "complement", "set_bbox",  "align"};
 
 } // namespace
 
@@ -150,6 +150,15 @@ Written Writer::curv_changed(const Written &of, const std::string &name, const N
         lost_.insert("`lipschitz`, as bounds are derived here");
         return of;
     }
+    if (name == "set_bbox") {
+        lost_.insert("`set_bbox`, as boxes are found here");
+        return of;
+    }
+    if (name == "align") {
+        const Node *from = part_of(*a, "from"), *to = part_of(*a, "to");
+        if (!from || !to) throw Unsure{};
+        return changed(call_text("orient", {text(*from), text(*to)}));
+    }
     if (name == "move" || name == "translate") return changed("translate(" + text(*a) + ")");
     if (name == "scale" || name == "stretch") return changed("scale(" + text(*a) + ")");
     if (name == "reflect") return changed("reflect(" + text(*a) + ")");
@@ -176,10 +185,13 @@ Written Writer::curv_changed(const Written &of, const std::string &name, const N
         return changed("repeat([" + text(a->parts[0]) + ", " + text(a->parts[1]) + ", 0])");
     }
     if (name != "colour" && name != "color") throw Unsure{};
-    if (a->is == Is::Call && (is_named(a->parts[0], "sRGB") || is_named(a->parts[0], "rgb")) &&
-        a->parts[1].is == Is::List && a->parts[1].parts.size() == 3) {
+    if (a->is == Is::Call && a->parts[1].is == Is::List && a->parts[1].parts.size() == 3) {
+        const Node &of_numbers = a->parts[0];
+        const bool hsv = of_numbers.is == Is::Member && of_numbers.text == "HSV" &&
+                         is_named(of_numbers.parts[0], "sRGB");
+        if (!hsv && !is_named(of_numbers, "sRGB") && !is_named(of_numbers, "rgb")) throw Unsure{};
         const std::string all = text(a->parts[1]);
-        return changed("paint(rgb(" + all.substr(1, all.size() - 2) + "))");
+        return changed((hsv ? "paint(hsv(" : "paint(rgb(") + all.substr(1, all.size() - 2) + "))");
     }
     if (a->is != Is::Name) throw Unsure{};
     return changed("paint(" + (find(a->text) ? text(*a) : a->text) + ")");
@@ -259,9 +271,12 @@ Written Writer::curv_call(const Node &n) {
 
 // `Z_axis`, `nothing`, `45*deg`.
 std::optional<Written> Writer::curv_constant(const Node &n) {
-    if (n.is == Is::Binary && n.text == "*" && n.parts[0].is == Is::Number &&
-        is_named(n.parts[1], "deg"))
-        return Written{n.parts[0].text + "deg", as_call, Kind::Number};
+    if (n.is == Is::Binary && n.text == "*" && is_named(n.parts[1], "deg")) {
+        const Node &turn = n.parts[0];
+        if (turn.is == Is::Number) return Written{turn.text + "deg", as_call, Kind::Number};
+        if (turn.is == Is::Unary && turn.text == "-" && turn.parts[0].is == Is::Number)
+            return Written{"-" + turn.parts[0].text + "deg", 10, Kind::Number};
+    }
     if (n.is != Is::Name || find(n.text)) return std::nullopt;
     if (const auto axis = axis_of(n.text)) return Written{*axis, as_call, Kind::Vector};
     if (n.text == "nothing") return Written{"empty", as_call, Kind::Solid};
@@ -272,6 +287,15 @@ std::optional<Written> Writer::curv_constant(const Node &n) {
 
 // `param r = 1 in 0.5..2`.
 void Writer::curv_param(const Statement &s) {
+    if (s.name == "colour_picker") {
+        if (s.value.is != Is::Name) throw Unsure{};
+        return line("param " + declare(s.targets[0].text, Kind::Unknown) + " = " + s.value.text);
+    }
+    if (s.name == "checkbox") {
+        const std::string &on = s.value.text; // `#true`
+        return line("param " + declare(s.targets[0].text, Kind::Unknown) + " = " +
+                    (on.ends_with("true") ? "true" : "false"));
+    }
     const Node &ends = s.targets[1];
     if (ends.is != Is::List || ends.parts.size() != 2) throw Unsure{};
     const std::string low = text(ends.parts[0], 8), high = text(ends.parts[1], 8),

@@ -91,8 +91,9 @@ std::optional<Told> told_by_words(const std::vector<Piece> &pieces) {
         if (p.text == "fn" || p.text == "param") ++ours;
         const bool starts = i == 0 || p.first || is_word_at(pieces, i - 1, "[") ||
                             is_word_at(pieces, i - 1, "=") || is_word_at(pieces, i - 1, ",") ||
-                            is_word_at(pieces, i - 1, "in");
-        const bool spaced = starts && !next.first && next.spaced &&
+                            is_word_at(pieces, i - 1, "in") || is_word_at(pieces, i - 1, "else") ||
+                            is_word_at(pieces, i - 1, ")");
+        const bool spaced = starts && !next.first && (next.spaced || next.text == "{") &&
                             std::ranges::find(curv_shapes, p.text) != curv_shapes.end() &&
                             (next.kind == Word::Number || next.text == "[" || next.text == "{" ||
                              next.kind == Word::Name);
