@@ -336,6 +336,8 @@ bool Printer::edited_block(const Fix &fix, const Sources &sources) {
     if (first == last && !breaks) return false;
     const bool all = edit.span.begin == 0 && edit.span.end == source.text.size();
     const std::string_view before = line_text(source, first), behind = line_text(source, last);
+    constexpr std::size_t most = 4000; // bytes to show: a line may have millions
+    if (!all && before.size() + edit.replacement.size() + behind.size() > most) return true;
     const std::size_t from = edit.span.begin - source.line_starts[first - 1];
     const std::size_t to = edit.span.end - source.line_starts[last - 1];
     const std::string lines = std::string(before.substr(0, std::min(from, before.size()))) +
