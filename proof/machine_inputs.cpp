@@ -87,11 +87,23 @@ void Step::read() {
         machine.value_[at] = made->value[0];
 }
 
+// A hash of whole numbers that are known, as a loop's variable in its turn, is known too: single
+// precision has them exactly.
 void Step::hash() {
-    bool fixed = true;
-    for (int c = 0; c < size(0); ++c)
-        fixed = fixed && zero(grad(0, c)) && (!in.wavers || value(0, c).is_point());
-    set(0, {0, 1}, none);
+    constexpr double exact_below = 0x1p24;
+    bool fixed = true, known = in.whole;
+    ir::Constant whole{
+        machine.ranges_.scene->graph[machine.ranges_.scene->graph.arg(in.node, 0)].type, {}};
+    for (int c = 0; c < size(0); ++c) {
+        const Interval v = value(0, c);
+        const double only = std::round(v.middle());
+        fixed = fixed && zero(grad(0, c)) && (!in.wavers || v.is_point());
+        known = known && v.lo > only - 1 && v.hi < only + 1 && std::fabs(only) < exact_below;
+        whole.value[static_cast<std::size_t>(c)] = only;
+    }
+    const auto made = known ? ir::evaluate_single(in.op, in.type, {&whole, 1}, in.payload)
+                            : std::optional<ir::Constant>();
+    set(0, made ? Interval(made->value[0]) : Interval(0, 1), none);
     if (!fixed || norm(0) > 0) return fail(Trouble::Jump);
     finish(0, any_odd);
 }

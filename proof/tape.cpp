@@ -193,6 +193,7 @@ Slot Flattener::flatten_node(Scope &scope, NodeId id) {
     if (node.op == Op::Mod)
         out.whole = is_whole_power_of_two(graph, graph.arg(id, 1)) &&
                     is_made_whole(graph, graph.arg(id, 0));
+    if (node.op == Op::Hash) out.whole = is_made_whole(graph, graph.arg(id, 0));
     if (winding && (node.op == Op::Sin || node.op == Op::Cos) && graph.reads(id).point)
         return emit_unwound(scope, id, std::move(out));
     switch (look_of_op[node.op]) {

@@ -35,3 +35,19 @@ TEST_CASE("a while loop that the point ends needs a limit") {
     CHECK(code_name(c.diagnostics.items()[0].code) == "loop-limit");
     CHECK_FALSE(compiled(folding("while k < 4", "    k += 0\n")).good()); // no end
 }
+
+TEST_CASE("directions by the hash of a loop's number are known as unit vectors") {
+    const auto bound_of = [](const std::string &angle, const std::string &height) {
+        const driver::Compilation made = test::compiled(
+            "fn cut(p: vec3) -> float {\n  var d = -1000.0\n  for i in 0..20 {\n    let a = " +
+            angle + "\n    let z = " + height +
+            "\n    let r = sqrt(1 - z * z)\n"
+            "    d = max(d, dot(p, vec3(r * cos(a), z, r * sin(a))) - 0.8)\n  }\n  d\n}\n"
+            "implicit(cut, within: ball(3))\n");
+        REQUIRE(made.good());
+        return made.scene.facts.at(made.scene.top_level.at(0).shape.index).lipschitz_sup;
+    };
+    CHECK(bound_of("6.2831 * hash(i)", "2 * hash(i + 100) - 1") < 1.00001);
+    CHECK(bound_of("6.2831 * hash([i, 1])", "2 * hash(3.0 * i + 1) - 1") < 1.00001);
+    CHECK(bound_of("6.2831 * hash(0.1 * i)", "0.5") > 1.00001); // in single precision not known
+}
