@@ -269,8 +269,16 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
                    {{{declared.source, declared.begin - 4, declared.begin - 1}, "var"}});
         else if (ev.calls.empty() && ev.in_field == 0) {
             help_with_let(ev, ast, node, d, name->text, path, binding.value);
-        } else
+        } else if (in_body) {
             d.help("declare it with `var` inside the function");
+        } else {
+            Span whole = place;
+            const std::string &all = ev.sources[place.source].text;
+            if (whole.end < all.size() && all[whole.end] == ';') ++whole.end;
+            d.help("a function changes nothing outside of it: leave this away, or let the function "
+                   "give it",
+                   {{whole, ""}});
+        }
         // One cause, one report: an argument goes on as the copy that it is told to be.
         if (!is_argument) return assign(ev, found->frame, found->slot, poison());
         ev.frames[found->frame].bindings[found->slot].is_var = true;
