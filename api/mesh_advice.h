@@ -1,7 +1,7 @@
 // What is said beside a mesh: of walls, gaps and edges that its cells are too large for.
 #pragma once
 
-#include "mesh/mesh.h"
+#include "mesh/certify.h"
 
 #include <string>
 #include <vector>
@@ -17,5 +17,8 @@ std::string advice_of(const ir::Scene &scene, const fathom::mesh::Settings &sett
 // Empty: of nothing.
 std::string advice_on_drawn(const ir::Scene &scene, const fathom::mesh::Settings &settings,
                             const fathom::mesh::Made &made);
+
+// Where cells of half the side show another shape.
+std::string advice_on_shape(const fathom::mesh::Made &made, const fathom::mesh::Form &finer);
 
 } // namespace fathom::v1

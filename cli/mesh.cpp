@@ -46,7 +46,14 @@ Json json_of(const v1::Mesh &mesh) {
     json["mesh_components"] = of.components;
     json["mesh_genus"] = of.genus;
     if (c) {
-        const auto everywhere = [&](double d) { return c->certified ? Json(d) : Json(); };
+        const bool near = mesh.undecided_cells == 0 && c->unproved_places == 0;
+        const auto everywhere = [&](double d) { return near ? Json(d) : Json(); };
+        json["components"] = c->shape_proved ? Json(of.components) : Json();
+        json["genus"] = c->shape_proved ? Json(of.genus) : Json();
+        if (!c->shape_proved)
+            json["shape_open"] = {{"cells", c->shape_open},
+                                  {"near", c->shape_open > 0 ? Json(c->shape_place) : Json()},
+                                  {"doubted", c->shape_doubted}};
         json["mesh_to_surface"] = everywhere(c->mesh_to_surface);
         json["surface_to_mesh"] = everywhere(c->surface_to_mesh);
         json["volume"] = {c->least_volume, c->largest_volume};
@@ -91,12 +98,21 @@ void say_certificate(const v1::Mesh &mesh, const std::string &what, Terminal &te
     const std::string volume =
         fmt::format("the solid's volume lies between {:.6g} and {:.6g}, its area {}",
                     c.least_volume, c.largest_volume, area);
+    const std::string pieces =
+        c.components == 1 ? "one piece" : fmt::format("{} pieces", c.components);
+    const std::string near = fmt::format("all of the mesh lies within {:.3g} of the surface, and "
+                                         "all of the surface within {:.3g} of the mesh",
+                                         c.mesh_to_surface, c.surface_to_mesh);
+    const std::string handles =
+        fmt::format("{} and {} handle{}", pieces, c.genus, c.genus == 1 ? "" : "s");
     if (c.certified)
-        terminal.say(fmt::format(
-            "{}: certified: all of the mesh lies within {:.3g} of the surface, "
-            "and all of the surface within {:.3g} of the mesh; {}; {}",
-            what, c.mesh_to_surface, c.surface_to_mesh,
-            c.components == 1 ? "one piece" : fmt::format("{} pieces", c.components), volume));
+        terminal.say(fmt::format("{}: certified: {}; {} {}; {}", what, near,
+                                 c.shape_proved ? "the solid's surface is in" : "the mesh is in",
+                                 handles, volume));
+    else if (c.shape_doubted)
+        terminal.say(fmt::format("{}: partial: {}; but the mesh is in {}, and that the solid is so "
+                                 "is not proved; {}",
+                                 what, near, handles, volume));
     else
         terminal.say(fmt::format("{}: partial: of {} cells and of {} places of the mesh nothing is "
                                  "proved; {}",

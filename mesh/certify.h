@@ -6,6 +6,7 @@
 #include "mesh/measure.h"
 
 #include <limits>
+#include <optional>
 
 namespace fathom::mesh {
 
@@ -15,6 +16,12 @@ struct Unproved {
     Real3 triangle{};
 };
 
+// In how many pieces a closed mesh is, and how many handles they have.
+struct Form {
+    std::size_t components = 0;
+    long genus = 0;
+    bool operator==(const Form &) const = default;
+};
 struct Certificate {
     // Every point of the mesh has surface as near as this, and every point of the surface in the
     // cells that are not undecided has mesh as near as that. At most the side of a drawing cell.
@@ -37,21 +44,27 @@ struct Certificate {
     Real3 open_place{};
     bool looked_for_area = true; // for its upper end; else that would take too much
     double mesh_volume = 0, mesh_area = 0;
+    // By `prove_shape`: pieces and handles are those of the solid's surface. Else that is open in so many
+    // leaves, one of them about there; in none where it was not looked for.
+    bool shape_proved = false;
+    std::size_t shape_open = 0;
+    Real3 shape_place{};
+    std::vector<Cell> shape_cells; // of these leaves those that smaller ones may tell of
+    // Samples see walls, gaps or edges that cells are too large for: the mesh may have other pieces and
+    // handles than the solid.
+    bool shape_doubted = false;
+    std::optional<Form> finer; // … or cells of half the side show others
     // Whether the proofs used the proved bound, besides intervals.
     bool used_bound = false;
     std::size_t divisions = 0; // of boxes, that this took: counted work
-    bool certified() const { return undecided.empty() && unproved.empty(); }
+    bool near() const { return undecided.empty() && unproved.empty(); } // both distances hold
+    bool certified() const { return near() && !shape_doubted; }
 };
 
 // The volume of what is undecided, in cells of the finest level.
 std::uint64_t volume_in_doubt(const Certificate &certificate, const Lattice &lattice);
 
-// In how many pieces a closed mesh is, and how many handles they have.
-struct Form {
-    std::size_t components = 0;
-    long genus = 0;
-};
-Form form_of(const Mesh &mesh);
+Form form_of(const Mesh &mesh); // closed
 
 // A certificate of the mesh before some of its cells were divided.
 struct Earlier {

@@ -1,5 +1,7 @@
 #include "mesh/mend.h"
 
+#include "mesh/drawn.h"
+#include "mesh/shape.h"
 #include "mesh/thin.h"
 #include "mesh/widen.h"
 
@@ -273,6 +275,104 @@ bool gain_may_be_late(const Certificate &certificate, const std::vector<Cell> &d
            (!certificate.unproved.empty() && std::ranges::any_of(divided, large));
 }
 
+// Divides cells, and makes the mesh and its certificate again. Whether that was done.
+bool divide_again(const Field &field, const Settings &settings, std::vector<Cell> divided,
+                  std::size_t most, Mended &mended, Progress &progress) {
+    OctreeSettings octree;
+    octree.threads = threads_of(settings);
+    Made next; // what there is stays, should this one come to nothing
+    next.box = mended.made.box;
+    next.octree = mended.made.octree;
+    refine(next.octree, field, divided, octree, progress);
+    const double here = progress.to;
+    progress.phase(here + 0.25 * (1 - here));
+    if (progress.cancelled ||
+        finish_mesh(next, field, settings, most, divided, progress) != Failure::None)
+        return false;
+    Region changed(next.octree.lattice);
+    for (const Cell &cell : divided) changed.add(cell);
+    const Earlier earlier{mended.certificate, changed};
+    progress.phase(here + 0.5 * (1 - here));
+    Certificate certificate = certify(field, settings, next, &earlier, progress);
+    mended.certificate = std::move(certificate);
+    mended.made = std::move(next);
+    ++mended.rounds;
+    return true;
+}
+
+// Divides the cells that leave the mesh's shape open, where they are few.
+void divide_for_shape(const Field &field, const Settings &settings, std::size_t most,
+                      Mended &mended, Progress &progress) {
+    constexpr int most_rounds = 10;
+    constexpr std::size_t few = 128; // cells
+    for (int round = 0; round < most_rounds && !progress.cancelled; ++round) {
+        const Lattice &lattice = mended.made.octree.lattice;
+        std::vector<Cell> cells = mended.certificate.shape_cells;
+        std::erase_if(cells, [&](const Cell &cell) { return cell.level >= lattice.depth; });
+        if (cells.empty() || mended.certificate.shape_open > few) return;
+        Mended next = mended;
+        if (!divide_again(field, settings, std::move(cells), most, next, progress) ||
+            !next.certificate.near())
+            return;
+        prove_shape(field, settings, next.made, progress, next.certificate);
+        mended = std::move(next);
+    }
+}
+
+// Whether cells of another size show the same pieces and handles: of twice the side or, where these do
+// not, of half of it. Else what those show, if they may be tried.
+std::optional<Form> finer_form(const ir::Scene &scene, const Settings &settings, const Made &made,
+                               const Form &form, bool &same) {
+    constexpr double most_nodes_of_finer = 0.6e6;
+    Settings other = settings;
+    other.deeper = 0;
+    other.progress = {};
+    const double side = made.octree.lattice.side(made.octree.lattice.level);
+    other.side = 2 * side;
+    const Made coarser = make_plain_mesh(scene, other);
+    same = coarser.failure == Failure::None && form_of(coarser.mesh) == form;
+    if (same || 4 * double(made.octree.nodes.size()) > most_nodes_of_finer) return std::nullopt;
+    other.side = 0.5 * side;
+    const Made finer = make_plain_mesh(scene, other);
+    if (finer.failure != Failure::None) return std::nullopt;
+    const Form shown = form_of(finer.mesh);
+    same = shown == form;
+    return shown;
+}
+
+// Says whether the mesh has the shape of the solid. Where a few cells leave that open they are divided;
+// where samples see what cells are too large for, it is drawn wider, or doubted.
+void settle_shape(const ir::Scene &scene, const Field &field, const Settings &settings,
+                  bool was_wider, std::size_t most, Mended &mended, Progress &progress) {
+    if (!mended.certificate.near() || mended.made.widened != 0) return;
+    Certificate &certificate = mended.certificate;
+    prove_shape(field, settings, mended.made, progress, certificate);
+    divide_for_shape(field, settings, most, mended, progress);
+    if (certificate.shape_proved || progress.cancelled) return;
+    const TooThin thin = too_thin_in(field, settings, mended.made);
+    if (thin.sort == TooThin::Sort::None) {
+        bool same = true;
+        const Form form{certificate.components, certificate.genus};
+        const std::optional<Form> finer = finer_form(scene, settings, mended.made, form, same);
+        certificate.shape_doubted = !same;
+        if (!same) certificate.finer = finer;
+        return;
+    }
+    certificate.shape_doubted = true;
+    // What is shrunk to show gaps may come apart, and no sample would see that.
+    constexpr std::size_t large = 300'000; // nodes: several meshes more would take too long
+    // Where pieces are far thinner than cells they are sharp edges rather than walls.
+    const double side = mended.made.octree.lattice.side(mended.made.octree.lattice.level);
+    const bool sharp = thin.sort == TooThin::Sort::Pieces && thin.thickness < side / 8;
+    if (was_wider || sharp || thin.sort == TooThin::Sort::Gaps ||
+        mended.made.octree.nodes.size() > large)
+        return;
+    std::optional<Wider> wide = draw_wider(scene, field, settings, mended.made,
+                                           ThinWalls{thin.thickness, thin.gap}, progress);
+    if (!wide || !wide->certificate.near()) return;
+    mended.made = std::move(wide->made), certificate = std::move(wide->certificate);
+}
+
 } // namespace
 
 Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
@@ -323,29 +423,18 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
         if (divided.empty() || progress.cancelled) break;
         const bool may_wait = !choice.hopeless && gain_may_be_late(mended.certificate, divided,
                                                                    mended.made.octree.lattice);
-        Made next; // what there is stays, should this one come to nothing
-        next.box = mended.made.box;
-        next.octree = mended.made.octree;
-        refine(next.octree, field, divided, octree, progress);
-        const double here = progress.to;
-        progress.phase(here + 0.25 * (1 - here));
-        if (progress.cancelled ||
-            finish_mesh(next, field, settings, most, divided, progress) != Failure::None)
-            break;
-        Region changed(next.octree.lattice);
-        for (const Cell &cell : divided) changed.add(cell);
-        const Earlier earlier{mended.certificate, changed};
-        progress.phase(here + 0.5 * (1 - here));
-        Certificate certificate = certify(field, settings, next, &earlier, progress);
+        const Certificate last = mended.certificate;
+        if (!divide_again(field, settings, divided, most, mended, progress)) break;
         const bool gained =
-            gains(mended.certificate, certificate, next.octree.lattice, choice.hopeless);
-        mended.certificate = std::move(certificate);
-        mended.made = std::move(next);
-        ++mended.rounds;
+            gains(last, mended.certificate, mended.made.octree.lattice, choice.hopeless);
         if (!gained && !may_wait) break;
     }
-    if (wide && doubt_of(wide->made, wide->certificate) < doubt_of(mended.made, mended.certificate))
+    if (wide && !mended.certificate.near() &&
+        doubt_of(wide->made, wide->certificate) < doubt_of(mended.made, mended.certificate))
         take_wide();
+    if (!progress.cancelled)
+        settle_shape(scene, field, settings, wide.has_value(), most, mended, progress);
+    if (mended.certificate.shape_doubted && wide && wide->certificate.near()) take_wide();
     if (progress.cancelled) mended.made.failure = Failure::Cancelled;
     return mended;
 }

@@ -2,6 +2,7 @@
 
 #include "backend-cpu/prune/solid_box.h"
 #include "mesh/crumbs.h"
+#include "mesh/drawn.h"
 #include "mesh/thin.h"
 #include "mesh/widen.h"
 
@@ -254,17 +255,21 @@ Made make_plain_mesh(const ir::Scene &scene, const Settings &settings) {
 
 Made make_mesh(const ir::Scene &scene, const Settings &settings) {
     Made made = make_plain_mesh(scene, settings);
-    if (made.octree.undecided.empty() ||
-        (made.failure != Failure::None && made.failure != Failure::Unseen))
-        return made;
+    if (made.failure != Failure::None && made.failure != Failure::Unseen) return made;
     const Field field(scene, settings.time, settings.bounds);
     Progress progress;
     progress.report = settings.progress;
     progress.from = progress.to; // it was at its end
-    std::optional<Wider> wider =
-        draw_wider(scene, field, settings, made, made.octree.undecided, progress);
+    std::optional<Wider> wider;
+    if (!made.octree.undecided.empty()) {
+        wider = draw_wider(scene, field, settings, made, made.octree.undecided, progress);
+    } else if (const TooThin thin = too_thin_in(field, settings, made);
+               thin.sort == TooThin::Sort::Holes || thin.sort == TooThin::Sort::Pieces) {
+        wider =
+            draw_wider(scene, field, settings, made, ThinWalls{thin.thickness, thin.gap}, progress);
+    }
     if (progress.cancelled) made.failure = Failure::Cancelled;
-    if (!progress.cancelled && wider && wider->certificate.certified()) {
+    if (!progress.cancelled && wider && wider->certificate.near()) {
         made = std::move(wider->made);
         made.octree.undecided.clear();
     }

@@ -157,7 +157,7 @@ bool same_colors(const Piece &piece, const Mesh &mesh, double tolerance) {
 }
 
 // A block: what is in it, what became of it, and which aim that was.
-struct Block {
+struct MeshBlock {
     std::vector<std::uint32_t> triangles; // of the mesh that comes in
     std::vector<std::array<std::uint32_t, 3>> made;
     std::size_t aim = 0; // as many as there are: it stays as it was
@@ -170,7 +170,7 @@ struct Pass {
 };
 
 // Tries aims, from the block's own on, until all checks hold; gives how many did not.
-std::size_t simplify_block(const Pass &pass, Block &block) {
+std::size_t simplify_block(const Pass &pass, MeshBlock &block) {
     std::size_t refused = 0;
     const Piece piece = piece_of(pass.mesh, pass.colors, block.triangles);
     for (; block.aim < aims.size(); ++block.aim) {
@@ -189,9 +189,9 @@ std::size_t simplify_block(const Pass &pass, Block &block) {
     return refused;
 }
 
-std::vector<Block> blocks_of(const Mesh &mesh, const std::vector<std::uint8_t> &kept, double side,
-                             double shift) {
-    std::map<std::array<std::int64_t, 3>, Block> blocks;
+std::vector<MeshBlock> blocks_of(const Mesh &mesh, const std::vector<std::uint8_t> &kept,
+                                 double side, double shift) {
+    std::map<std::array<std::int64_t, 3>, MeshBlock> blocks;
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         if (kept[t]) continue;
         std::array<std::int64_t, 3> at{};
@@ -202,7 +202,7 @@ std::vector<Block> blocks_of(const Mesh &mesh, const std::vector<std::uint8_t> &
         }
         blocks[at].triangles.push_back(t);
     }
-    std::vector<Block> result;
+    std::vector<MeshBlock> result;
     for (auto &[at, block] : blocks) result.push_back(std::move(block));
     return result;
 }
@@ -211,7 +211,7 @@ std::vector<Block> blocks_of(const Mesh &mesh, const std::vector<std::uint8_t> &
 std::size_t run_pass(const Pass &pass, const std::vector<std::uint8_t> &kept, double side,
                      double shift, unsigned threads, Progress &progress, Mesh &result,
                      std::vector<std::uint8_t> &result_kept) {
-    std::vector<Block> blocks = blocks_of(pass.mesh, kept, side, shift);
+    std::vector<MeshBlock> blocks = blocks_of(pass.mesh, kept, side, shift);
     std::vector<std::size_t> todo(blocks.size());
     for (std::size_t b = 0; b < todo.size(); ++b) todo[b] = b;
     std::size_t refused = 0;

@@ -240,12 +240,7 @@ bool move_apart(Mesh &mesh, const std::vector<Point> &from, bool all, unsigned t
     }
 }
 
-// Whether most of what a mesh does not show is walls or gaps, by samples: about how thick they are.
-struct ThinWalls {
-    double thickness = 0; // 0: no
-    bool gaps = false;    // it is gaps
-};
-
+// Whether most of what a mesh does not show is walls or gaps, by samples.
 ThinWalls thin_walls_of(const Field &field, const Settings &settings, const Made &made,
                         std::span<const Cell> cells, Progress &progress) {
     std::vector<double> walls, gaps;
@@ -259,48 +254,114 @@ ThinWalls thin_walls_of(const Field &field, const Settings &settings, const Made
     return {thick[thick.size() / 4], more_gaps};
 }
 
-// The same octree with another mesh. `times`: cells are so many times smaller than the drawing cells.
-// None: there is none, or it was cancelled.
-std::optional<Made> widened(const ir::Scene &scene, const Field &field, const Settings &settings,
-                            const Made &made, const ThinWalls &walls, double times,
-                            Progress &progress) {
+// The solid that is drawn in the scene's place, by cells that are `times` times smaller than the
+// drawing cells.
+struct WiderSolid {
+    double side = 0;
+    float by = 0; // it is grown by so much, or shrunk
+    ir::Box box;
+    std::optional<ir::Box> cut; // at which it ends
+};
+
+WiderSolid wider_solid(const Settings &settings, const Made &made, const ThinWalls &walls,
+                       double times) {
     const Lattice &lattice = made.octree.lattice;
-    Settings finer = settings;
-    finer.side = lattice.side(lattice.level) / times;
-    const double by = 0.5 * std::max(shows_walls * finer.side - walls.thickness, 0.0);
-    const float sign = walls.gaps ? -1.0f : 1.0f;
-    ir::Box box = made.box;
-    if (!walls.gaps) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            box.lo[i] -= 1.01 * by, box.hi[i] += 1.01 * by;
-            if (!settings.bounds) continue;
-            box.lo[i] = std::max(box.lo[i], settings.bounds->lo[i]);
-            box.hi[i] = std::min(box.hi[i], settings.bounds->hi[i]);
-        }
+    WiderSolid solid{lattice.side(lattice.level) / times, 0, made.box, settings.bounds};
+    const double by = 0.5 * std::max(shows_walls * solid.side - walls.thickness, 0.0);
+    solid.by = static_cast<float>(walls.gaps ? -by : by);
+    for (std::size_t i = 0; !walls.gaps && i < 3; ++i) {
+        solid.box.lo[i] -= 1.01 * by, solid.box.hi[i] += 1.01 * by;
+        if (!settings.bounds) continue;
+        solid.box.lo[i] = std::max(solid.box.lo[i], settings.bounds->lo[i]);
+        solid.box.hi[i] = std::min(solid.box.hi[i], settings.bounds->hi[i]);
     }
-    const Field wide(scene, settings.time, walls.gaps ? settings.bounds : box,
-                     sign * static_cast<float>(by));
-    const double from = progress.from, to = progress.to;
-    progress.to = from + 0.4 * (to - from);
-    Made drawn = make_mesh_of(wide, box, finer, progress);
-    if (drawn.failure != Failure::None) return std::nullopt;
-    progress.phase(from + 0.7 * (to - from));
+    if (!walls.gaps) solid.cut = solid.box;
+    return solid;
+}
+
+Made draw_solid(const ir::Scene &scene, const Settings &settings, const WiderSolid &solid,
+                Progress &progress) {
+    Settings finer = settings;
+    finer.side = solid.side;
+    const Field wide(scene, settings.time, solid.cut, solid.by);
+    return make_mesh_of(wide, solid.box, finer, progress);
+}
+
+// The same octree with another mesh, that of a drawn solid. None: there is none, or it was cancelled.
+std::optional<Made> moved_to_surface(const Field &field, const Settings &settings, const Made &made,
+                                     const ThinWalls &walls, const WiderSolid &solid, Made drawn,
+                                     Progress &progress) {
+    const Lattice &lattice = made.octree.lattice;
+    const float sign = walls.gaps ? -1.0f : 1.0f;
     const auto level = static_cast<float>(kept_off * walls.thickness);
     const unsigned threads = threads_of(settings);
     std::vector<Point> at = moved(field, drawn.mesh.vertices, level, sign, threads, progress);
     if (!progress.cancelled) find_edges(field, drawn, level, sign, threads, at, progress);
-    progress.phase(to);
+    progress.phase(progress.to);
     std::swap(at, drawn.mesh.vertices);
-    const bool all = by > 0.5 * lattice.side(lattice.level); // else nothing would be proved there
+    // Else nothing would be proved there.
+    const bool all = std::fabs(solid.by) > 0.5 * lattice.side(lattice.level);
     if (progress.cancelled || !move_apart(drawn.mesh, at, all, threads, progress))
         return std::nullopt;
     Made result = made;
     result.failure = Failure::None;
     result.mesh = std::move(drawn.mesh);
-    result.widened = sign * by;
+    result.widened = solid.by;
     find_roots(field, level, sign, threads, result, progress);
     if (progress.cancelled) return std::nullopt;
     return result;
+}
+
+// Whether gaps between walls, or walls between gaps, are seen that are narrower than what both sides
+// are moved by: from places near the surface by steps of sphere tracing.
+bool may_close(const Field &field, const Made &made, const ThinWalls &walls, double width) {
+    constexpr std::size_t looks = 4096, few = 4;
+    constexpr int most = 32; // steps
+    const std::vector<Cell> cells = open_leaves(made.octree);
+    const Lattice &lattice = made.octree.lattice;
+    const std::size_t count = std::min(cells.size(), looks);
+    const float sign = walls.gaps ? -1.0f : 1.0f;
+    const auto level = static_cast<float>(kept_off * walls.thickness);
+    std::vector<Point> at;
+    for (std::size_t k = 0; k < count; ++k) {
+        const Cell &cell = cells[k * cells.size() / count];
+        const Point lo = point_of(lattice, cell.at),
+                    hi = point_of(lattice, corner(cell.at, lattice.cells(cell.level), 7));
+        at.push_back({});
+        for (std::size_t i = 0; i < 3; ++i) at.back()[i] = 0.5f * (lo[i] + hi[i]);
+    }
+    Mover mover(field);
+    mover.move(at, level, sign);
+    Points points;
+    for (const Point &p : at) points.add(p);
+    std::array<std::vector<float>, 4> slope;
+    gradients_at(mover.evaluator, *field.whole, points, slope);
+    std::vector<double> gone(count, 0);
+    std::size_t hits = 0;
+    for (int step = 0; step < most; ++step) {
+        for (std::size_t k = 0; k < count; ++k) {
+            const double value = double(sign) * slope[0][k],
+                         rate = std::hypot(slope[1][k], slope[2][k], slope[3][k]);
+            if (step == 0 && !(value > 0 && value < 8 * level && rate > 1e-3)) gone[k] = unbounded;
+            if (!(gone[k] < width)) continue;
+            if (!(value > 0.5 * level)) { // it has come to another side
+                hits += gone[k] > 4 * level;
+                gone[k] = unbounded;
+                continue;
+            }
+            gone[k] += value;
+        }
+        points.clear();
+        for (std::size_t k = 0; k < count; ++k) {
+            Point p = at[k];
+            const double rate = std::hypot(slope[1][k], slope[2][k], slope[3][k]);
+            for (std::size_t i = 0; gone[k] < width && i < 3; ++i)
+                p[i] += static_cast<float>(sign * gone[k] * slope[1 + i][k] / rate);
+            points.add(p);
+        }
+        values_at(mover.evaluator, *field.whole, points, slope[0]);
+    }
+    return hits > few;
 }
 
 } // namespace
@@ -317,23 +378,73 @@ std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
     if (cells.size() < few_cells || few_share * cells.size() < crossed) return std::nullopt;
     const ThinWalls walls = thin_walls_of(field, settings, made, cells, progress);
     if (!(walls.thickness > 0)) return std::nullopt;
+    return draw_wider(scene, field, settings, made, walls, progress);
+}
+
+std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
+                                const Settings &settings, const Made &made, const ThinWalls &walls,
+                                Progress &progress) {
     std::optional<Wider> best;
     const double from = progress.from, to = progress.to;
+    const auto affordable = [&](double times) {
+        return times <= 1 || times * times * double(made.octree.nodes.size()) < most_nodes_of_wider;
+    };
+    struct Shown {
+        std::optional<Form> form; // none: there is no such mesh
+    };
+    std::optional<Shown> coarser;                    // by cells of twice the side
+    std::optional<std::pair<WiderSolid, Made>> next; // drawn to be compared
     for (const double times : {1.0, 2.0, 4.0}) {
-        if (times > 1 && times * times * double(made.octree.nodes.size()) > most_nodes_of_wider)
-            break;
-        progress.from = from, progress.to = 0.5 * (from + to);
-        std::optional<Made> wide = widened(scene, field, settings, made, walls, times, progress);
+        if (!affordable(times)) break;
+        progress.from = from, progress.to = from + 0.2 * (to - from);
+        const auto draw = [&](double n) {
+            const WiderSolid solid = wider_solid(settings, made, walls, n);
+            Made drawn = draw_solid(scene, settings, solid, progress);
+            return std::pair{solid, std::move(drawn)};
+        };
+        const auto form = [](const Made &drawn) {
+            return drawn.failure == Failure::None ? std::optional(form_of(drawn.mesh))
+                                                  : std::nullopt;
+        };
+        auto [solid, drawn] = next ? std::move(*next) : draw(times);
+        next.reset();
         if (progress.cancelled) break;
-        if (!wide) continue;
-        progress.phase(to);
-        Wider wider{std::move(*wide), {}};
-        wider.certificate = certify(field, settings, wider.made, nullptr, progress);
+        const std::optional<Form> here = form(drawn);
+        if (!here) {
+            coarser = Shown{};
+            continue;
+        }
+        progress.phase(from + 0.35 * (to - from));
+        std::optional<Made> wide =
+            moved_to_surface(field, settings, made, walls, solid, std::move(drawn), progress);
         if (progress.cancelled) break;
-        if (!best ||
-            doubt_of(wider.made, wider.certificate) < doubt_of(best->made, best->certificate))
-            best = std::move(wider);
-        if (best->certificate.certified()) break;
+        if (wide) {
+            progress.phase(to);
+            Wider wider{std::move(*wide), {}};
+            wider.certificate = certify(field, settings, wider.made, nullptr, progress);
+            if (progress.cancelled) break;
+            if (wider.certificate.near()) {
+                bool same = false;
+                if (!coarser) coarser = Shown{form(draw(0.5 * times).second)};
+                same = coarser->form == here;
+                if (!same && affordable(2 * times)) {
+                    next = draw(2 * times);
+                    same = form(next->second) == here;
+                }
+                if (progress.cancelled) break;
+                wider.certificate.shape_doubted =
+                    !same || may_close(field, made, walls, 2 * std::fabs(solid.by));
+            }
+            const auto better = [&] {
+                if (wider.certificate.near() != best->certificate.near())
+                    return wider.certificate.near();
+                return wider.certificate.certified() || doubt_of(wider.made, wider.certificate) <
+                                                            doubt_of(best->made, best->certificate);
+            };
+            if (!best || better()) best = std::move(wider);
+            if (best->certificate.certified()) break;
+        }
+        coarser = Shown{here};
     }
     return best;
 }

@@ -138,7 +138,9 @@ void add_data(py::module_ &m) {
         .def_readonly("least_area", &fathom::MeshCertificate::least_area)
         .def_readonly("largest_area", &fathom::MeshCertificate::largest_area)
         .def_readonly("components", &fathom::MeshCertificate::components)
-        .def_readonly("genus", &fathom::MeshCertificate::genus);
+        .def_readonly("genus", &fathom::MeshCertificate::genus)
+        .def_readonly("shape_proved", &fathom::MeshCertificate::shape_proved)
+        .def_readonly("shape_doubted", &fathom::MeshCertificate::shape_doubted);
 }
 
 void add_mesh(py::module_ &m) {

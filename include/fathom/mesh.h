@@ -63,10 +63,11 @@ enum class MeshStatus {
 /** What is proved of a mesh, and what of it is a number of the mesh alone. docs/meshes.md has the
  *  argument, and what it rests on. */
 struct MeshCertificate {
-    /** The two distances hold everywhere: no cell is undecided, no place of the mesh unproved. */
+    /** The two distances hold everywhere, no cell is undecided, no place of the mesh unproved; and
+     *  `shape_doubted` is false. */
     bool certified = false;
     /** Every point of the mesh has surface as near as this; every point of the surface has mesh as
-     *  near as this. Where not `certified`: but for the undecided cells and the unproved places. */
+     *  near as this, but for the undecided cells and the unproved places. */
     double mesh_to_surface = 0, surface_to_mesh = 0;
     /** Cells with places where parts of the solid touch, or are no farther apart than `seam_width`:
      *  what surface there may be between them is not in the mesh. */
@@ -75,6 +76,15 @@ struct MeshCertificate {
     std::size_t unproved_places = 0; /**< pieces of triangles without surface found near them */
     std::size_t components = 0;      /**< of the mesh */
     long genus = 0;                  /**< of the mesh, all its components together */
+    /** It is proved that the solid's surface has as many components as the mesh, and handles. Else it
+     *  is open in `shape_open` cells, one of them about `shape_place`; in none where it was not
+     *  looked for, as where walls thinner than cells were drawn wider. */
+    bool shape_proved = false;
+    std::size_t shape_open = 0;
+    std::array<double, 3> shape_place{};
+    /** Walls, gaps or edges are seen that cells are too large for: the solid may have another number
+     *  of pieces and handles. `Mesh::message` says what shows them. */
+    bool shape_doubted = false;
     /** The solid's volume lies between these. */
     double least_volume = 0, largest_volume = 0;
     /** So does the area of its surface. `largest_area` is infinite where in `open_places` of the

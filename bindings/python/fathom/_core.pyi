@@ -70,6 +70,8 @@ class MeshCertificate:
     largest_area: float
     components: int
     genus: int
+    shape_proved: bool
+    shape_doubted: bool
 
 class Mesh:
     vertices: NDArray[np.float32]

@@ -1,0 +1,379 @@
+#include "mesh/shape.h"
+
+#include "mesh/slopes.h"
+#include "mesh/walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::mesh {
+namespace {
+
+constexpr int halvings_of_leaf = 2;  // of a leaf
+constexpr int most_joined = 2;       // levels above the drawing level that are looked at first
+constexpr std::size_t hopeless = 16; // leaves of a task of which no slopes are known, or
+constexpr std::size_t too_many = 64; // … in which it is open: no more looks
+constexpr double by_rounding = 1e-9; // of a length
+
+struct Facet {
+    Triangle3 at;
+    Real3 normal; // of length 1
+};
+
+// Whether a triangle and a box may have a point in common: no axis across which both lie apart.
+bool may_touch(const Triangle3 &t, const Real3 &middle, const Real3 &half) {
+    Triangle3 p;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = minus(t[k], middle);
+    const auto apart = [&](const Real3 &axis) {
+        double lo = unbounded, hi = -unbounded, reach = 0;
+        for (const Real3 &at : p) {
+            const double s = inner(at, axis);
+            lo = std::min(lo, s), hi = std::max(hi, s);
+        }
+        for (std::size_t i = 0; i < 3; ++i) reach += std::fabs(axis[i]) * half[i];
+        const double spare = by_rounding * (std::fabs(lo) + std::fabs(hi) + reach);
+        return lo > reach + spare || hi < -reach - spare;
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+        Real3 axis{};
+        axis[i] = 1;
+        if (apart(axis)) return false;
+    }
+    const std::array<Real3, 3> sides{minus(t[1], t[0]), minus(t[2], t[1]), minus(t[0], t[2])};
+    if (apart(outer(sides[0], sides[1]))) return false;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (const Real3 &side : sides) {
+            Real3 axis{};
+            axis[i] = 1;
+            if (apart(outer(axis, side))) return false;
+        }
+    return true;
+}
+
+std::optional<Real3> unit_of(const Real3 &way) {
+    const double length = std::sqrt(inner(way, way));
+    if (!(length > 0 && std::isfinite(length))) return std::nullopt;
+    return Real3{way[0] / length, way[1] / length, way[2] / length};
+}
+
+// A way that passes as many facets outward as can be, by turns towards the one that it passes worst.
+std::optional<Real3> way_across(const std::vector<Facet> &facets,
+                                const std::vector<std::uint32_t> &touched) {
+    constexpr int most_turns = 32;
+    Real3 sum{};
+    for (const std::uint32_t t : touched) sum = along(sum, facets[t].normal, 1);
+    std::optional<Real3> way = unit_of(sum), best = way;
+    double most = -unbounded;
+    for (int turn = 0; way && turn < most_turns; ++turn) {
+        double least = unbounded;
+        std::uint32_t worst = 0;
+        for (const std::uint32_t t : touched)
+            if (const double passed = inner(facets[t].normal, *way); passed < least)
+                least = passed, worst = t;
+        if (least > most) most = least, best = way;
+        way = unit_of(along(*way, facets[worst].normal, 1.0 / (2 + turn)));
+    }
+    return best;
+}
+
+// Whether a way from one point to another crosses a triangle; none where it comes near to its sides.
+std::optional<bool> crosses(const Real3 &from, const Real3 &to, const Triangle3 &t) {
+    const auto volume = [](const Real3 &a, const Real3 &b, const Real3 &c, const Real3 &d) {
+        const Real3 u = minus(b, a), v = minus(c, a), w = minus(d, a);
+        const double size = std::sqrt(inner(u, u) * inner(v, v) * inner(w, w));
+        const double six = inner(outer(u, v), w);
+        return std::fabs(six) > by_rounding * size ? six : 0;
+    };
+    const double start = volume(t[0], t[1], t[2], from), end = volume(t[0], t[1], t[2], to);
+    if (start == 0 || end == 0) return std::nullopt;
+    if ((start > 0) == (end > 0)) return false;
+    std::array<double, 3> about{};
+    for (std::size_t k = 0; k < 3; ++k) about[k] = volume(from, to, t[k], t[(k + 1) % 3]);
+    for (const double v : about)
+        if (v == 0) return std::nullopt;
+    return (about[0] > 0) == (about[1] > 0) && (about[1] > 0) == (about[2] > 0);
+}
+
+// A leaf of the octree.
+struct Leaf {
+    Block box;
+    std::uint8_t signs = 0;               // of its corners
+    std::vector<std::uint32_t> touched{}; // the triangles that touch it
+};
+
+// One thread's memory.
+struct ShapeProver {
+    ShapeProver(const Field &field, const Octree &octree, const std::vector<Facet> &of)
+        : splitter(field), facets(of), ulp(octree.lattice.ulp) {}
+    Splitter splitter;
+    const std::vector<Facet> &facets;
+    const double ulp;
+    double kernels = 0; // so many may be looked at yet
+
+    Block grown(const Block &box) const {
+        Block wide = box;
+        for (std::size_t i = 0; i < 3; ++i) {
+            wide.lo[i] = std::nextafter(static_cast<float>(box.lo[i] - ulp), -INFINITY);
+            wide.hi[i] = std::nextafter(static_cast<float>(box.hi[i] + ulp), INFINITY);
+        }
+        return wide;
+    }
+
+    std::vector<std::uint32_t> touching(const Block &wide,
+                                        const std::vector<std::uint32_t> &among) const {
+        Real3 middle{}, half{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            middle[i] = 0.5 * (double(wide.lo[i]) + wide.hi[i]);
+            half[i] = 0.5 * (double(wide.hi[i]) - wide.lo[i]);
+        }
+        std::vector<std::uint32_t> found;
+        for (const std::uint32_t t : among)
+            if (may_touch(facets[t].at, middle, half)) found.push_back(t);
+        return found;
+    }
+
+    // Steady; not known: then parts of the box are not known either.
+    enum class Answer { Yes, No, Unknown };
+
+    // Whether there is a way along which the field rises all over a box, and all triangles that touch
+    // it are passed outward.
+    Answer is_steady(const cpu::ShortTape &tape, const Block &wide,
+                     const std::vector<std::uint32_t> &touched) {
+        kernels -= tape.cost;
+        Evaluator &evaluator = splitter.evaluator;
+        const std::optional<Linear> linear =
+            linear_over(evaluator, tape, splitter.boxes, wide.lo, wide.hi);
+        if (!linear) return Answer::Unknown;
+        const std::optional<Real3> mean =
+            unit_of({linear->slope[0], linear->slope[1], linear->slope[2]});
+        const std::optional<Real3> across = way_across(facets, touched);
+        std::optional<Real3> both;
+        if (mean && across) both = unit_of(along(*mean, *across, 1));
+        const auto passes = [&](const Real3 &way) {
+            return std::ranges::all_of(touched, [&](std::uint32_t t) {
+                return inner(facets[t].normal, way) > by_rounding;
+            });
+        };
+        const auto ways = {mean, across, both};
+        for (const std::optional<Real3> &way : ways) {
+            if (!way || !passes(*way)) continue;
+            double rise = 0, size = 0;
+            for (std::size_t i = 0; i < 3; ++i) {
+                rise += (*way)[i] * linear->slope[i] - std::fabs((*way)[i]) * linear->spread[i];
+                size += std::fabs(linear->slope[i]) + linear->spread[i];
+            }
+            if (rise > by_rounding * size) return Answer::Yes;
+        }
+        for (const std::optional<Real3> &way : ways) {
+            if (!way || !passes(*way)) continue;
+            kernels -= tape.cost;
+            const std::optional<double> rise =
+                least_slope_along(evaluator, tape, splitter.boxes, wide.lo, wide.hi,
+                                  {(*way)[0], (*way)[1], (*way)[2]});
+            if (rise && *rise > by_rounding) return Answer::Yes;
+        }
+        return Answer::No;
+    }
+
+    // Whether a point of a leaf that no triangle touches lies inside of the mesh, by the ways to it from
+    // the leaf's corners; none where all pass too near to a triangle's side.
+    std::optional<bool> is_inside(const Real3 &point, const Leaf &leaf) const {
+        for (int c = 0; c < 8; ++c) {
+            Real3 from{};
+            for (std::size_t i = 0; i < 3; ++i)
+                from[i] = (c >> i & 1 ? leaf.box.hi : leaf.box.lo)[i];
+            bool inside = leaf.signs >> c & 1, sure = true;
+            for (const std::uint32_t t : leaf.touched) {
+                const std::optional<bool> crossed = crosses(from, point, facets[t].at);
+                sure = sure && crossed;
+                inside = inside != crossed.value_or(false);
+            }
+            if (sure) return inside;
+        }
+        return std::nullopt;
+    }
+
+    // Whether each part of a box is steady, but for those that neither surface nor mesh is in, and that
+    // lie on the same side of both.
+    Answer prove(const cpu::ShortTape &tape, const Block &box, const Leaf &leaf,
+                 const std::vector<std::uint32_t> &among, int halvings) {
+        const Block wide = grown(box);
+        const std::vector<std::uint32_t> touched = touching(wide, among);
+        const Answer answer = is_steady(tape, wide, touched);
+        if (answer != Answer::No || halvings == 0 || kernels < 0) return answer;
+        std::array<Block, 8> parts;
+        cpu::Boxes &boxes = splitter.boxes;
+        boxes.count = 16;
+        double squares = 0;
+        for (std::size_t k = 0; k < 8; ++k) {
+            parts[k] = box;
+            squares = 0;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const float cut = 0.5f * (box.lo[i] + box.hi[i]);
+                (k >> i & 1 ? parts[k].lo : parts[k].hi)[i] = cut;
+                const float lo = parts[k].lo[i], hi = parts[k].hi[i];
+                boxes.lo[i][k] = lo, boxes.hi[i][k] = hi;
+                boxes.lo[i][8 + k] = boxes.hi[i][8 + k] = 0.5f * (lo + hi);
+                squares += std::pow(double(hi) - lo, 2);
+            }
+        }
+        ranges_over(splitter.evaluator, tape, boxes);
+        std::array<Space, 8> space{};
+        for (std::size_t k = 0; k < 8; ++k)
+            space[k] = space_of(splitter.evaluator, k, 0.5 * std::sqrt(squares), ulp, true);
+        for (std::size_t k = 0; k < 8; ++k) {
+            if (space[k] != Space::Open && touching(grown(parts[k]), touched).empty()) {
+                const std::optional<bool> inside = is_inside(real(parts[k].lo), leaf);
+                if (inside != (space[k] == Space::Inside)) return Answer::No;
+                continue;
+            }
+            const Answer part = prove(tape, parts[k], leaf, touched, halvings - 1);
+            if (part != Answer::Yes) return part;
+        }
+        return Answer::Yes;
+    }
+};
+
+// What is known of the leaves of a task.
+struct ShapeFound {
+    std::size_t open = 0;    // leaves in which it is not known
+    Real3 place{};           // one of them
+    std::size_t unknown = 0; // of these, those of which no slopes are known
+    std::vector<Cell> cells; // those that smaller ones may tell of
+};
+
+// The leaves of a task.
+struct ShapeTask {
+    const Octree &octree;
+    const Lattice &lattice;
+    const Grid &grid;
+    const std::vector<Cell> &leaves;
+    TapePtr tape; // that holds about all of them
+
+    Block box_of(const Cell &leaf, int level) const {
+        const std::int32_t side = lattice.cells(level);
+        Index at = leaf.at;
+        for (std::int32_t &x : at) x -= x % side;
+        return {point_of(lattice, at), point_of(lattice, corner(at, side, 7))};
+    }
+
+    // Leaves from `first` to before `last`, all in one cell of the level.
+    void prove(ShapeProver &prover, std::size_t first, std::size_t last, int level,
+               ShapeFound &found) const {
+        if (found.unknown >= hopeless || found.open >= too_many || prover.kernels < 0) {
+            found.open += last - first;
+            return;
+        }
+        const Block box = box_of(leaves[first], level), wide = prover.grown(box);
+        std::vector<std::uint32_t> near;
+        grid.find(real(wide.lo), real(wide.hi), near);
+        const TapePtr shorter = tape_in(prover.splitter, tape, wide);
+        if (level == leaves[first].level) {
+            const Leaf leaf{box, octree.nodes[static_cast<std::size_t>(leaves[first].node)].signs,
+                            prover.touching(wide, near)};
+            const auto answer = prover.prove(*shorter, box, leaf, leaf.touched, halvings_of_leaf);
+            if (answer == ShapeProver::Answer::Yes) return;
+            if (answer == ShapeProver::Answer::No) found.cells.push_back(leaves[first]);
+            found.unknown += answer == ShapeProver::Answer::Unknown;
+            if (found.open++ == 0)
+                for (std::size_t i = 0; i < 3; ++i)
+                    found.place[i] = 0.5 * (double(box.lo[i]) + box.hi[i]);
+            return;
+        }
+        if (last - first > 1 && prover.is_steady(*shorter, wide, prover.touching(wide, near)) ==
+                                    ShapeProver::Answer::Yes)
+            return;
+        for (std::size_t k = first, next; k < last; k = next) {
+            const Point at = box_of(leaves[k], level + 1).lo;
+            for (next = k + 1; next < last && box_of(leaves[next], level + 1).lo == at;) ++next;
+            prove(prover, k, next, level + 1, found);
+        }
+    }
+};
+
+// The leaves that surface or mesh may go through, as a certificate knows, by their task.
+std::vector<std::vector<Cell>> leaves_by_task(const Made &made, const Certificate &certificate) {
+    std::vector<std::int32_t> drawn, free;
+    for (const Patch &patch : made.loops.patches) drawn.push_back(patch.cell.node);
+    std::ranges::sort(drawn);
+    free = certificate.empty;
+    std::ranges::sort(free);
+    std::vector<std::vector<Cell>> tasks(made.octree.tapes.size());
+    for (const Cell &leaf : open_leaves(made.octree)) {
+        if (std::ranges::binary_search(free, leaf.node) &&
+            !std::ranges::binary_search(drawn, leaf.node))
+            continue;
+        const Node &node = made.octree.nodes[static_cast<std::size_t>(leaf.node)];
+        tasks[static_cast<std::size_t>(node.task)].push_back(leaf);
+    }
+    std::erase_if(tasks, [](const std::vector<Cell> &task) { return task.empty(); });
+    return tasks;
+}
+
+} // namespace
+
+void prove_shape(const Field &field, const Settings &settings, const Made &made, Progress &progress,
+                 Certificate &certificate, double work) {
+    certificate.shape_proved = false;
+    certificate.shape_open = 0;
+    certificate.shape_cells.clear();
+    if (made.simplified > 0 || made.widened != 0) return;
+    const Lattice &lattice = made.octree.lattice;
+    const std::vector<std::vector<Cell>> tasks = leaves_by_task(made, certificate);
+    std::vector<Facet> facets;
+    Grid grid(point_of(lattice, {0, 0, 0}), lattice.side(lattice.level));
+    for (const auto &t : made.mesh.triangles) {
+        Facet facet{{real(made.mesh.vertices[t[0]]), real(made.mesh.vertices[t[1]]),
+                     real(made.mesh.vertices[t[2]])},
+                    {}};
+        facet.normal =
+            unit_of(outer(minus(facet.at[1], facet.at[0]), minus(facet.at[2], facet.at[0])))
+                .value_or(Real3{});
+        Real3 lo = facet.at[0], hi = lo;
+        for (const Real3 &p : facet.at)
+            for (std::size_t i = 0; i < 3; ++i)
+                lo[i] = std::min(lo[i], p[i]), hi[i] = std::max(hi[i], p[i]);
+        grid.add(lo, hi, static_cast<std::uint32_t>(facets.size()));
+        facets.push_back(facet);
+    }
+    grid.sort();
+    std::size_t leaves = 0;
+    for (const std::vector<Cell> &task : tasks) leaves += task.size();
+    std::vector<ShapeFound> found(tasks.size());
+    in_parallel(
+        tasks.size(), threads_of(settings), progress,
+        [&] { return ShapeProver(field, made.octree, facets); },
+        [&](ShapeProver &prover, std::size_t number) {
+            ShapeTask task{made.octree, lattice, grid, tasks[number], {}};
+            constexpr float far = std::numeric_limits<float>::infinity();
+            Block all{{far, far, far}, {-far, -far, -far}};
+            const int level = std::max(lattice.level - most_joined, 0);
+            for (const Cell &leaf : task.leaves) {
+                const Block box = task.box_of(leaf, std::min(level, leaf.level));
+                for (std::size_t i = 0; i < 3; ++i) {
+                    all.lo[i] = std::min(all.lo[i], box.lo[i]);
+                    all.hi[i] = std::max(all.hi[i], box.hi[i]);
+                }
+            }
+            task.tape = tape_in(prover.splitter, field.whole, prover.grown(all));
+            prover.kernels =
+                work * static_cast<double>(task.leaves.size()) / static_cast<double>(leaves);
+            for (std::size_t k = 0, next; k < task.leaves.size(); k = next) {
+                const int of = std::min(level, task.leaves[k].level);
+                const Point at = task.box_of(task.leaves[k], of).lo;
+                for (next = k + 1;
+                     next < task.leaves.size() && task.box_of(task.leaves[next], of).lo == at;)
+                    ++next;
+                task.prove(prover, k, next, of, found[number]);
+            }
+        });
+    for (const ShapeFound &of : found) {
+        if (certificate.shape_open == 0) certificate.shape_place = of.place;
+        certificate.shape_open += of.open;
+        certificate.shape_cells.insert(certificate.shape_cells.end(), of.cells.begin(),
+                                       of.cells.end());
+    }
+    certificate.shape_proved = certificate.shape_open == 0 && !progress.cancelled;
+}
+
+} // namespace fathom::mesh

@@ -1,0 +1,16 @@
+// Whether a mesh has the shape of the solid that it was made of: as many pieces, and handles
+// (docs/meshes.md, 13).
+#pragma once
+
+#include "mesh/certify.h"
+
+namespace fathom::mesh {
+
+// Of a certificate's mesh: says whether its pieces and handles are proved to be those of the solid's
+// surface, and else in how many places that is open. Not looked for where that takes more than so many
+// kernels over boxes, about.
+inline constexpr double shape_work = 0.5e6;
+void prove_shape(const Field &field, const Settings &settings, const Made &made, Progress &progress,
+                 Certificate &certificate, double work = shape_work);
+
+} // namespace fathom::mesh
