@@ -9,11 +9,12 @@
 namespace fathom::mesh {
 namespace {
 
-constexpr int halvings_of_leaf = 2;  // of a leaf
-constexpr int most_joined = 2;       // levels above the drawing level that are looked at first
-constexpr std::size_t hopeless = 16; // leaves of a task of which no slopes are known, or
-constexpr std::size_t too_many = 64; // … in which it is open: no more looks
-constexpr double by_rounding = 1e-9; // of a length
+constexpr int halvings_of_leaf = 2;    // of a leaf
+constexpr int most_joined = 2;         // levels above the drawing level that are looked at first
+constexpr std::size_t hopeless = 16;   // leaves of a task of which no slopes are known, or
+constexpr std::size_t too_many = 64;   // … in which it is open: no more looks
+constexpr double least_of_task = 5000; // kernels
+constexpr double by_rounding = 1e-9;   // of a length
 
 struct Facet {
     Triangle3 at;
@@ -260,11 +261,14 @@ struct ShapeTask {
     // Leaves from `first` to before `last`, all in one cell of the level.
     void prove(ShapeProver &prover, std::size_t first, std::size_t last, int level,
                ShapeFound &found) const {
-        if (found.unknown >= hopeless || found.open >= too_many || prover.kernels < 0) {
-            found.open += last - first;
-            return;
-        }
         const Block box = box_of(leaves[first], level), wide = prover.grown(box);
+        const auto leave_open = [&](std::size_t count) {
+            for (std::size_t i = 0; found.open == 0 && i < 3; ++i)
+                found.place[i] = 0.5 * (double(box.lo[i]) + box.hi[i]);
+            found.open += count;
+        };
+        if (found.unknown >= hopeless || found.open >= too_many || prover.kernels < 0)
+            return leave_open(last - first);
         std::vector<std::uint32_t> near;
         grid.find(real(wide.lo), real(wide.hi), near);
         const TapePtr shorter = tape_in(prover.splitter, tape, wide);
@@ -275,10 +279,7 @@ struct ShapeTask {
             if (answer == ShapeProver::Answer::Yes) return;
             if (answer == ShapeProver::Answer::No) found.cells.push_back(leaves[first]);
             found.unknown += answer == ShapeProver::Answer::Unknown;
-            if (found.open++ == 0)
-                for (std::size_t i = 0; i < 3; ++i)
-                    found.place[i] = 0.5 * (double(box.lo[i]) + box.hi[i]);
-            return;
+            return leave_open(1);
         }
         if (last - first > 1 && prover.is_steady(*shorter, wide, prover.touching(wide, near)) ==
                                     ShapeProver::Answer::Yes)
@@ -357,7 +358,8 @@ void prove_shape(const Field &field, const Settings &settings, const Made &made,
             }
             task.tape = tape_in(prover.splitter, field.whole, prover.grown(all));
             prover.kernels =
-                work * static_cast<double>(task.leaves.size()) / static_cast<double>(leaves);
+                std::max(least_of_task, work * static_cast<double>(task.leaves.size()) /
+                                            static_cast<double>(leaves));
             for (std::size_t k = 0, next; k < task.leaves.size(); k = next) {
                 const int of = std::min(level, task.leaves[k].level);
                 const Point at = task.box_of(task.leaves[k], of).lo;
@@ -368,7 +370,7 @@ void prove_shape(const Field &field, const Settings &settings, const Made &made,
             }
         });
     for (const ShapeFound &of : found) {
-        if (certificate.shape_open == 0) certificate.shape_place = of.place;
+        if (certificate.shape_open == 0 && of.open > 0) certificate.shape_place = of.place;
         certificate.shape_open += of.open;
         certificate.shape_cells.insert(certificate.shape_cells.end(), of.cells.begin(),
                                        of.cells.end());

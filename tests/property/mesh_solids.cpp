@@ -12,7 +12,7 @@ using namespace fathom;
 
 TEST_CASE("meshes of solids with flush faces and thin walls are what their certificates say") {
     const std::uint64_t count = std::uint64_t(test::effort(30)), seed = std::uint64_t(test::seed());
-    std::size_t made_meshes = 0, certified = 0, crossed = 0, undecided = 0;
+    std::size_t made_meshes = 0, near = 0, certified = 0, proved = 0, crossed = 0, undecided = 0;
     for (std::uint64_t number = 0; number < count; ++number) {
         test::Dice dice{seed * 1'000'033 + number};
         const std::string text = test::RandomSolid(seed * 7933 + number).text() + "\n";
@@ -34,7 +34,16 @@ TEST_CASE("meshes of solids with flush faces and thin walls are what their certi
         ++made_meshes;
         test::judged(mended.made.mesh);
         const mesh::Certificate &certificate = mended.certificate;
+        near += certificate.near();
         certified += certificate.certified();
+        if (certificate.shape_proved) { // so is that of smaller cells, if it is proved
+            ++proved;
+            mesh::Settings finer = settings;
+            finer.resolution *= 2;
+            const mesh::Certificate other = make_certified_mesh(c.scene, finer).certificate;
+            CHECK((!other.shape_proved || other.components == certificate.components));
+            CHECK((!other.shape_proved || other.genus == certificate.genus));
+        }
         undecided += certificate.undecided.size();
         for (const mesh::Cell &cell : open_leaves(mended.made.octree))
             crossed += mended.made.octree.nodes[std::size_t(cell.node)].crossed();
@@ -48,7 +57,9 @@ TEST_CASE("meshes of solids with flush faces and thin walls are what their certi
                            mesh::Field(c.scene, settings.time, settings.bounds), dice);
     }
     CHECK(made_meshes > 3 * count / 4);
-    CHECK(10 * certified >= 9 * made_meshes);
-    WARN(made_meshes << " meshes, " << certified << " certified, " << undecided << " of " << crossed
-                     << " crossed cells undecided");
+    CHECK(10 * near >= 9 * made_meshes);
+    CHECK(2 * certified >= made_meshes); // of others the shape is in doubt: walls are thin
+    WARN(made_meshes << " meshes, " << near << " with proved distances, " << certified
+                     << " certified, " << proved << " with a proved shape, " << undecided << " of "
+                     << crossed << " crossed cells undecided");
 }
