@@ -1,6 +1,7 @@
 // What makes a tape of an expression: scopes, slots, and each node's instruction (tape.h).
 #pragma once
 
+#include "proof/forms.h"
 #include "proof/linear_maps.h"
 #include "proof/rescaled.h"
 #include "proof/supports.h"
@@ -99,6 +100,7 @@ struct Flattener {
     std::optional<NodeId> without_factors(Scope &scope, NodeId id);
     Slot product(Scope &scope, NodeId id, Instruction out);
 
+    Slot norm_of_powers(Scope &scope, NodeId id, Instruction out, const PNormParts &found);
     NodeId in_scalar_factors(NodeId id, int depth = 0);
     Slot power(Scope &scope, NodeId id, Instruction out);
     Slot quotient(Scope &scope, NodeId id, Instruction out);

@@ -98,12 +98,10 @@ void Step::p_norm() {
     }
     const double weight = // |w|_2 of the weights w of the parts' gradients
         power.lo < 2 ? up(std::pow(double(components), 1 / power.lo - 0.5), 8) : 1;
-    constexpr double most_power = 8; // beyond, single precision takes powers for 0 early (2.40)
-    double longest = 0;              // the weights' sum is at most a root of their number (Hölder)
+    double longest = 0; // the weights' sum is at most a root of their number (Hölder)
     for (int a = 0; a < last; ++a) longest = std::max(longest, norm(a));
     const double sum = up(std::pow(double(components), 1 / power.lo), 8),
-                 all = times(weight, together()),
-                 norms = power.hi <= most_power ? std::min(all, times(sum, longest)) : all;
+                 norms = std::min(times(weight, together()), times(sum, longest));
     for (std::size_t j = 0; j < 3; ++j) {
         double column = 0;
         for (int a = 0; a < last; ++a)

@@ -179,6 +179,19 @@ Slot Flattener::emit_unwound(Scope &scope, NodeId id, Instruction out) {
     return emit(scope, std::move(out));
 }
 
+// From the exponent 2 on it is no steeper than the vector of its parts.
+Slot Flattener::norm_of_powers(Scope &scope, NodeId id, Instruction out, const PNormParts &found) {
+    out.form = Form::PNorm;
+    for (const NodeId part : found.parts) out.args.push_back(slot(scope, part));
+    out.args.push_back(slot(scope, found.power));
+    const auto power = graph.as_number(found.power);
+    if (!power || *power < 2) return emit(scope, std::move(out));
+    std::vector<NodeId> parts = found.parts; // their signs do not matter
+    for (NodeId &part : parts)
+        while (graph[part].op == Op::Abs) part = graph.arg(part, 0);
+    return emit_by_pieces(scope, id, std::move(out), parts);
+}
+
 Slot Flattener::flatten_node(Scope &scope, NodeId id) {
     const ir::Node node = graph[id]; // a copy: recognising a form may add nodes
     Instruction out;
@@ -224,10 +237,8 @@ Slot Flattener::flatten_node(Scope &scope, NodeId id) {
             out.turned = {slot(scope, *x)};
             return emit_plain(scope, id, std::move(out));
         }
-        if (auto parts = p_norm(graph, id)) {
-            parts->parts.push_back(parts->power);
-            return emit(scope, out, Form::PNorm, parts->parts);
-        }
+        if (auto found = p_norm(graph, id))
+            return norm_of_powers(scope, id, std::move(out), *found);
         if (node.op == Op::Pow && node.type == ir::Type::Float)
             return power(scope, id, std::move(out));
         break;

@@ -175,13 +175,23 @@ class RoundedNorm : public Chance {
         default: return "sqrt(q * q + " + c + ") - " + between(0.1, 0.8);
         }
     }
+    std::string of_directions() {
+        const std::string n = of({"2", "3", "4", "6", "9", "12", "2.5", "1.5"});
+        std::string sum;
+        for (std::size_t i = 2 + pick(5); i > 0; --i)
+            sum += (sum.empty() ? "" : " + ") +
+                   ("pow(abs(dot(q, " + vector() + ")" + of({"", "", " - 0.2"}) + "), " + n + ")");
+        return "pow(" + sum + ", 1 / " + n + ")";
+    }
     std::string norm() {
         const std::string n = of({"3", "5", "2.5", "1.5", "1", "7"}),
                           root = pick(6) == 0 ? between(0.2, 1) : "1 / " + n;
         const std::string with = "pow(max(q.x, 0), " + n + ") + pow(q.y, " + n + ") + pow(" +
                                  of({"abs(q.z)", "max(q.z, 0)", "clamp(q.z, 0, 1)", "q.z"}) + ", " +
                                  n + ")";
-        switch (pick(6)) {
+        switch (pick(8)) {
+        case 6:
+        case 7: return of_directions();
         case 0: return "pow(" + with + ", " + root + ")";
         case 1: {
             const std::string m = "let m = " + of({"max(q, 0)", "max(q, -0.1)", "abs(q)"}) + "\n  ";

@@ -255,3 +255,25 @@ TEST_CASE("a distance from a line and the way along it are at right angles") {
     CHECK(other.lipschitz > 1.05);
     CHECK(other.lipschitz < 1.5);
 }
+
+TEST_CASE("a norm of powers of directions is as steep as their matrix, or as the steepest one") {
+    Scenery s;
+    Graph &g = s.g;
+    const auto norm_of = [&](const std::vector<NodeId> &parts, double n) {
+        NodeId sum;
+        for (const NodeId part : parts) {
+            const NodeId power = g.make(Op::Pow, {s.call(Op::Abs, part), s.n(n)});
+            sum = sum ? g.add(sum, power) : power;
+        }
+        return s.bound(g.make(Op::Pow, {sum, s.n(1 / n)}), cube(2)).lipschitz;
+    };
+    const NodeId sum = g.add(s.x, s.y), difference = g.sub(s.x, s.y);
+    CHECK(norm_of({sum, difference}, 4) == Approx(std::sqrt(2.0)).epsilon(1e-6));
+    CHECK(norm_of({s.x, g.mul(s.n(1.001), s.x)}, 20) >= std::pow(2, 1 / 20.0));
+    CHECK(norm_of({s.x, g.mul(s.n(1.001), s.x)}, 20) <= std::pow(2, 1 / 20.0) * 1.0011);
+    const NodeId b = g.add(g.mul(s.n(0.6), s.y), g.mul(s.n(0.8), s.z)),
+                 c = g.sub(g.mul(s.n(0.6), s.y), g.mul(s.n(0.8), s.z));
+    const double three = norm_of({s.x, b, c}, 3); // steepest along z: (2 * 0.8^3)^(1/3)
+    CHECK(three >= std::cbrt(2 * 0.512));
+    CHECK(three <= std::sqrt(2.0) * 0.8 * (1 + 1e-6));
+}
