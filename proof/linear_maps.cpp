@@ -10,6 +10,7 @@
 #include "proof/continuity.h"
 #include "proof/polynomials.h"
 #include "proof/segments.h"
+#include "proof/unit_vectors.h"
 
 #include <algorithm>
 #include <array>
@@ -237,7 +238,8 @@ std::optional<Norm> rows_norm(Graph &graph, const std::vector<std::array<NodeId,
             for (std::size_t c = 0; c < 4; ++c)
                 if (rows[i][c] && rows[j][c])
                     product = graph.add(product, graph.mul(rows[i][c], rows[j][c]));
-            const auto entry = number_of(graph, product);
+            auto entry = number_of(graph, product);
+            if (!entry) entry = number_of_units(graph, product);
             if (!entry) return {};
             sum += std::fabs(*entry);
             if (i == j)
@@ -431,7 +433,12 @@ std::optional<double> matrix_norm(Graph &graph, NodeId matrix) {
             if (!entry || reader.failed) return {};
             rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = entry;
         }
-    const auto norm = rows_norm(graph, rows);
+    auto norm = rows_norm(graph, rows);
+    if (norm) return norm->norm;
+    for (std::size_t i = 0; i < rows.size();
+         ++i) // M^T has the same: of a frame, its vectors are rows
+        for (std::size_t j = 0; j < i; ++j) std::swap(rows[i][j], rows[j][i]);
+    norm = rows_norm(graph, rows);
     return norm ? std::optional(norm->norm) : std::nullopt;
 }
 
