@@ -28,6 +28,10 @@ constexpr double not_as_steep = 0.01;
 constexpr double as_flat = 1e-6; // of a slope: what is rounded
 constexpr double tight = 1.1;    // a bound over the slope seen, with which no other vector is tried
 
+constexpr ir::OpSet may_jump{Op::Select, Op::Sign,      Op::Step,  Op::Trunc,   Op::Floor, Op::Ceil,
+                             Op::Round,  Op::Fract,     Op::Mod,   Op::Atan2,   Op::Loop,  Op::Hash,
+                             Op::Less,   Op::LessEqual, Op::Equal, Op::NotEqual};
+
 // Noise, and a hash as it is written by hand.
 bool is_noise(const ir::Graph &graph, NodeId id) {
     constexpr ir::OpSet noise{Op::Perlin, Op::Simplex,   Op::ValueNoise,
@@ -76,6 +80,8 @@ class Parts {
             if (written.all) field = written.root;
         }
         if (!is_small(field)) return {};
+        // What may jump tells apart what rounding alone does.
+        if (is_small(field, may_jump)) field = with_factors_in_order(graph_, field);
         const bool first = budget_.levels + 1 == Budget{}.levels;
         const std::size_t left = context_.work.left, most = std::min(left / 4, allowed);
         if (first) context_.work.left = most;
@@ -99,9 +105,6 @@ class Parts {
     // By a distance, where that is as near to what is seen as a search in space would come. What has
     // to be shown not to jump is looked at as it is written first: that costs more than the search.
     std::optional<FieldBound> by_distance(NodeId field) {
-        constexpr ir::OpSet may_jump{Op::Select, Op::Sign,  Op::Step,  Op::Trunc,
-                                     Op::Floor,  Op::Ceil,  Op::Round, Op::Fract,
-                                     Op::Mod,    Op::Atan2, Op::Loop};
         const ir::WithoutCalls written = ir::without_calls(graph_, field, max_nodes_composed);
         if (!written.all || !is_small(written.root, may_jump)) return {};
         const double enough = budget_.tolerance;

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <unordered_map>
 #include <unordered_set>
 
 namespace fathom::proof {
@@ -294,7 +295,79 @@ void gather(const Graph &graph, NodeId id, bool divides, std::vector<Factor> &ou
     }
 }
 
+// Products of one factor that moves and of others that do not, in one order.
+class InOrder {
+  public:
+    explicit InOrder(Graph &graph) : graph_(graph) {}
+
+    NodeId of(NodeId id) {
+        if (!graph_.reads(id).point) return id;
+        if (const auto known = known_.find(id); known != known_.end()) return known->second;
+        const ir::Node node = graph_[id];
+        NodeId out = id;
+        if (const NodeId chain = in_order(id)) {
+            out = chain;
+        } else if (node.count > 0 && node.op != Op::Loop && node.op != Op::LoopResult) {
+            std::vector<NodeId> args(graph_.args(id).begin(), graph_.args(id).end());
+            for (NodeId &arg : args) arg = of(arg);
+            out = graph_.make(node.op, node.type, args, node.payload);
+        }
+        return known_[id] = out;
+    }
+
+  private:
+    Graph &graph_;
+    std::unordered_map<NodeId, NodeId> known_;
+    struct Chain {
+        NodeId moves;               // one factor
+        std::vector<Factor> others; // that are no numbers
+        std::vector<Factor> numbers;
+        bool is_such = true;
+    };
+
+    void take(NodeId id, bool divides, ir::Type type, Chain &out) {
+        constexpr std::size_t most = 8;
+        const ir::Node node = graph_[id];
+        const bool splat = node.op == Op::Splat, moves = graph_.reads(id).point;
+        const bool is_product = node.op == Op::Mul || node.op == Op::Div;
+        out.is_such = out.is_such && out.others.size() + out.numbers.size() < most;
+        if (!out.is_such) return;
+        if (is_product || (splat && !moves)) {
+            take(graph_.arg(id, 0), divides, type, out);
+            if (is_product)
+                take(graph_.arg(id, 1), node.op == Op::Div ? !divides : divides, type, out);
+            return;
+        }
+        if (moves) {
+            out.is_such = !out.moves && !divides && node.type == type;
+            out.moves = id;
+            return;
+        }
+        const NodeId factor = node.type == type ? id : graph_.splat(id, type);
+        (graph_.is_constant(id) ? out.numbers : out.others).push_back({factor, divides});
+    }
+    NodeId in_order(NodeId id) {
+        const ir::Node node = graph_[id];
+        const bool by_component = node.type == ir::Type::Float || ir::is_vector(node.type);
+        if ((node.op != Op::Mul && node.op != Op::Div) || !by_component) return {};
+        Chain chain;
+        take(id, false, node.type, chain);
+        if (!chain.is_such || !chain.moves || chain.others.empty()) return {};
+        std::ranges::sort(chain.others, [](const Factor &a, const Factor &b) {
+            return a.divides != b.divides ? a.divides : a.number < b.number;
+        });
+        NodeId out = of(chain.moves);
+        for (const std::vector<Factor> *some : {&chain.others, &chain.numbers})
+            for (const Factor &factor : *some)
+                out = factor.divides ? graph_.div(out, factor.number)
+                                     : graph_.mul(out, factor.number);
+        return out;
+    }
+};
+
 } // namespace
+
+NodeId with_factors_in_order(Graph &graph, NodeId root) { return InOrder(graph).of(root); }
 
 std::optional<Rescaled> rescaled(Graph &graph, Factor factor, NodeId expression,
                                  RescaledNodes &known, Work &work) {

@@ -34,4 +34,8 @@ std::optional<Rescaled> rescaled(ir::Graph &graph, Factor factor, NodeId express
 // What a node is times, or divided by: the factors of a product or quotient, numbers apart.
 std::vector<Factor> factors_of(const ir::Graph &graph, NodeId product);
 
+// The same field with each product of what moves and of what stands still in one order, so that two
+// vectors of one scale read it through one: of `4*p/s` and `p/s`, 4*(p/s). For small fields.
+NodeId with_factors_in_order(ir::Graph &graph, NodeId root);
+
 } // namespace fathom::proof

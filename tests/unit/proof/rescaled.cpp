@@ -23,7 +23,7 @@ struct Sized {
     Scenery s;
     Graph &g = s.g;
     NodeId size = g.param(0, Type::Float), zero = g.number(0), half = g.number(0.5);
-    NodeId smaller = g.div(s.p, size), larger = g.mul(s.p, size);
+    NodeId n4 = g.number(4), smaller = g.div(s.p, size), larger = g.mul(s.p, size);
 
     double value(NodeId of, double by, std::array<double, 3> at) {
         const NodeId found =
@@ -127,6 +127,33 @@ TEST_CASE("a number and its inverse leave an expression of the same value") {
     }
 }
 
+TEST_CASE("products in one order have the same value, and those of one scale are one") {
+    Sized z;
+    Graph &g = z.g;
+    const NodeId t = g.time(), four = g.splat(z.n4, Type::Vec3), by = g.splat(z.size, Type::Vec3),
+                 moves = g.mul(t, z.size);
+    const NodeId often = g.div(four, by), times = g.mul(four, z.s.p);
+    const std::array<NodeId, 4> same{g.div(times, by), g.mul(often, z.s.p),
+                                     g.mul(g.div(z.s.p, by), four),
+                                     g.div({g.mul(z.s.p, by), g.mul(by, by)})};
+    const NodeId one = g.mul(g.div(z.s.p, by), four);
+    for (std::size_t i = 0; i < 3; ++i) CHECK(proof::with_factors_in_order(g, same[i]) == one);
+    for (const auto &[name, measure] : measures)
+        for (const NodeId vector : same) {
+            INFO(name);
+            const NodeId scaled = g.mul(vector, g.splat(moves, Type::Vec3));
+            const NodeId f = g.div({g.mul(measure(z, scaled), t), z.size}),
+                         ordered = proof::with_factors_in_order(g, f);
+            for (const std::array<double, 3> at :
+                 {std::array{0.2, 0.7, -0.3}, std::array{-1.1, 0.1, 0.9}}) {
+                const auto value = [&](NodeId of) {
+                    return z.value(ir::substitute(g, of, {{t, g.number(0.7)}}), 1.3, at);
+                };
+                CHECK(value(ordered) == Approx(value(f)).epsilon(1e-9).margin(1e-9));
+            }
+        }
+}
+
 TEST_CASE("the least of several sizes meets each of them") {
     for (const bool divides : {false, true}) {
         Sized z;
@@ -189,6 +216,12 @@ TEST_CASE("waves of a point that is made larger are as steep as what they are ov
         {"smaller", true,
          [&](Sized &z, NodeId p) {
              return z.g.mul(waves(z, z.g.div({p, z.size})), z.size);
+         }},
+        {"smaller by two products in other orders", true,
+         [&](Sized &z, NodeId p) {
+             const NodeId four = z.g.splat(z.n4, Type::Vec3), q = z.g.div(p, z.size),
+                          more = z.g.div({z.g.mul(four, p), z.size});
+             return z.g.mul(z.g.add(z.s.length(q), waves(z, more)), z.size);
          }},
         {"larger, over nothing", false,
          [&](Sized &z, NodeId p) { return waves(z, z.g.mul(p, z.size)); }},
