@@ -4,10 +4,12 @@
 // c_i, where q <= (hi - lo)^2/4. K may be any number that is not below 0.
 #include "proof/interpolation.h"
 
+#include "ir/interval.h"
 #include "proof/continuity.h"
 #include "proof/polynomials.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 
@@ -73,7 +75,8 @@ WeightProfile profile(const Powers &w) {
     return out;
 }
 
-double steepness(const std::vector<Powers> &weights) {
+// By one K for all values: fast, and right for any number of axes.
+double steepness_by_spread(const std::vector<Powers> &weights) {
     std::vector<WeightProfile> profiles;
     double most = 0;
     for (const Powers &w : weights) {
@@ -95,12 +98,192 @@ double steepness(const std::vector<Powers> &weights) {
     return std::sqrt(least) * (1 + 1e-9);
 }
 
+// A slope's square is convex in the values at the corners, so it is greatest where each of them is lo
+// or hi. For each of these ways, but those that mirrored or swapped axes make of another, the cell is
+// halved until nothing in it is steeper than `enough_`.
+class SteepestCorners {
+  public:
+    explicit SteepestCorners(const std::vector<Powers> &weights) : axes_(weights.size()) {
+        alike_ = std::ranges::all_of(weights, [&](const Powers &w) { return w == weights[0]; });
+        mirrored_ = alike_ && is_mirrored(weights[0]);
+        for (const Powers &w : weights) {
+            tables_.push_back(table(w));
+            enough_ = std::max(enough_, tables_.back()[1].slope);
+        }
+        enough_ *= enough_ * near_enough_to_steepest;
+    }
+    // Infinity where it would take too long; counts the boxes.
+    double steepness(std::size_t &boxes) {
+        const unsigned ways = 1u << ((1u << axes_) - 1); // with the others' signs turned
+        for (unsigned way = 0; way < ways; ++way)
+            if (is_first(way)) halve(way, {1, 1, 1}, boxes);
+        return boxes > most_boxes ? ir::rounding::infinity : std::sqrt(enough_) * (1 + 1e-9);
+    }
+
+  private:
+    static constexpr int levels = 8; // of halving
+    static constexpr std::size_t most_boxes = 60'000;
+    static constexpr double near_enough_to_steepest = 1.002;
+    struct Part { // of 0..1: the weight, the sizes of its slope and bend; and in the middle
+        double lo = 0, hi = 0, slope = 0, bend = 0, middle = 0, slope_there = 0, half = 0;
+    };
+    using Table = std::vector<Part>; // part 1 is all, 2i and 2i + 1 are the halves of i
+    using Box = std::array<std::size_t, max_axes>;
+    using Place = std::array<double, max_axes>; // a weight an axis
+    const std::size_t axes_;
+    bool alike_ = false, mirrored_ = false; // w(1 - f) = 1 - w(f)
+    std::vector<Table> tables_;
+    double enough_ = 0; // of a slope's square
+
+    static Powers derived(const Powers &w) {
+        Powers out{0};
+        for (std::size_t i = 1; i < w.size(); ++i) {
+            out.resize(i, 0.0);
+            out[i - 1] = double(i) * w[i];
+        }
+        return out;
+    }
+    static double at(const Powers &w, double f) {
+        double out = 0;
+        for (std::size_t i = w.size(); i-- > 0;) out = out * f + w[i];
+        return out;
+    }
+    static bool is_mirrored(const Powers &w) {
+        Powers sum = bernstein(w, w.size() - 1, 1, -1);
+        const Powers same = bernstein(w, w.size() - 1, 0, 1);
+        for (std::size_t i = 0; i < sum.size(); ++i)
+            if (std::fabs(sum[i] + same[i] - 1) > rounded) return false;
+        return true;
+    }
+    static Table table(const Powers &w) {
+        constexpr std::size_t leaves = std::size_t(1) << (levels - 1);
+        Table out(2 * leaves);
+        const Powers slope = derived(w), bend = derived(slope);
+        const auto size_of = [](const Powers &of, double from, double size) {
+            double most = 0;
+            for (double x : bernstein(of, of.size() - 1, from, size))
+                most = std::max(most, std::fabs(x) + rounded);
+            return most;
+        };
+        for (std::size_t i = 2 * leaves - 1; i > 0; --i) {
+            Part &part = out[i];
+            std::size_t first = 1;
+            while (2 * first <= i) first *= 2;
+            const double size = 1.0 / double(first), from = double(i - first) * size;
+            part.middle = at(w, from + size / 2), part.slope_there = at(slope, from + size / 2);
+            part.half = size / 2;
+            if (i >= leaves) {
+                const auto values = bernstein(w, w.size() - 1, from, size);
+                part.lo = std::ranges::min(values) - rounded;
+                part.hi = std::ranges::max(values) + rounded;
+                part.slope = size_of(slope, from, size), part.bend = size_of(bend, from, size);
+                continue;
+            }
+            const Part &a = out[2 * i], &b = out[2 * i + 1];
+            part.lo = std::min(a.lo, b.lo), part.hi = std::max(a.hi, b.hi);
+            part.slope = std::max(a.slope, b.slope), part.bend = std::max(a.bend, b.bend);
+        }
+        return out;
+    }
+
+    // Is the way the first of those that are as steep?
+    bool is_first(unsigned way) const {
+        const unsigned corners = 1u << axes_, all = (1u << (corners - 1) << 1) - 1;
+        std::array<unsigned, max_axes> order{0, 1, 2};
+        do {
+            for (unsigned mask = 0; mask < (mirrored_ ? corners : 1u); ++mask) {
+                unsigned image = 0;
+                for (unsigned corner = 0; corner < corners; ++corner) {
+                    unsigned to = 0;
+                    for (std::size_t i = 0; i < axes_; ++i) to |= (corner >> i & 1) << order[i];
+                    image |= (way >> corner & 1) << (to ^ mask);
+                }
+                if (image >> (corners - 1) & 1) image = ~image & all;
+                if (image < way) return false;
+            }
+        } while (alike_ && std::next_permutation(order.begin(), order.begin() + int(axes_)));
+        return true;
+    }
+
+    // What F changes by from 0 to 1 along each of these axes, a bit each, at a place.
+    double difference(unsigned way, unsigned along, const Place &place) const {
+        double sum = 0;
+        for (unsigned corner = 0; corner < 1u << axes_; ++corner) {
+            if (!(way >> corner & 1)) continue;
+            double weight = 1;
+            for (std::size_t i = 0; i < axes_; ++i) {
+                const bool far = corner >> i & 1;
+                weight *= along >> i & 1 ? (far ? 1 : -1) : far ? place[i] : 1 - place[i];
+            }
+            sum += weight;
+        }
+        return sum;
+    }
+    // … its greatest size in a box: it is affine in each other weight.
+    double change(unsigned way, unsigned along, const Box &box) const {
+        double out = 0;
+        for (unsigned end = 0; end < 1u << axes_; ++end) {
+            if (end & along) continue;
+            Place place{};
+            for (std::size_t i = 0; i < axes_; ++i) {
+                const Part &part = tables_[i][box[i]];
+                place[i] = end >> i & 1 ? part.hi : part.lo;
+            }
+            out = std::max(out, std::fabs(difference(way, along, place)));
+        }
+        return out;
+    }
+    // The square of the slope: by the sizes of its parts, and by the mean value theorem; and the axis
+    // along which it may change most, of those that can be halved.
+    double square_in(unsigned way, const Box &box, std::size_t &steepest_axis) const {
+        std::array<double, max_axes> most{}, slopes{};
+        Place middle{};
+        double square = 0;
+        for (std::size_t i = 0; i < axes_; ++i) {
+            const Part &part = tables_[i][box[i]];
+            most[i] = change(way, 1u << i, box), slopes[i] = part.slope, middle[i] = part.middle;
+            square += std::pow(slopes[i] * most[i], 2);
+        }
+        if (square <= enough_) return square;
+        double there = 0, greatest = -1;
+        for (std::size_t i = 0; i < axes_; ++i) {
+            const Part &part = tables_[i][box[i]];
+            there += std::pow(part.slope_there * difference(way, 1u << i, middle), 2);
+            double by = 2 * part.slope * part.bend * most[i] * most[i];
+            for (std::size_t k = 0; k < axes_; ++k)
+                if (k != i)
+                    by += 2 * slopes[k] * slopes[k] * most[k] * part.slope *
+                          change(way, 1u << i | 1u << k, box);
+            there += by * part.half;
+            if (by * part.half > greatest && 2 * box[i] < tables_[i].size())
+                greatest = by * part.half, steepest_axis = i;
+        }
+        return std::min(square, there * (1 + rounded) + rounded);
+    }
+    void halve(unsigned way, const Box &box, std::size_t &boxes) {
+        if (++boxes > most_boxes) return;
+        std::size_t axis = max_axes;
+        const double square = square_in(way, box, axis);
+        if (square <= enough_) return;
+        if (axis == max_axes) {
+            enough_ = square;
+            return;
+        }
+        for (std::size_t half = 0; half < 2; ++half) {
+            Box part = box;
+            part[axis] = 2 * part[axis] + half;
+            halve(way, part, boxes);
+        }
+    }
+};
+
 // A sum by the weights that its terms are multiplied with, a bit an axis.
 using Terms = std::map<unsigned, Polynomial>;
 
 class Interpolator {
   public:
-    Interpolator(Graph &graph, Work &work) : graph_(graph), work_(work), expansion_(graph, &work) {}
+    Interpolator(Graph &graph, SteepnessOfWeights &known, Work &work)
+        : graph_(graph), known_(known), work_(work), expansion_(graph, &work) {}
 
     std::optional<Interpolation> of(NodeId scalar) {
         const unsigned read = reads(scalar);
@@ -132,6 +315,18 @@ class Interpolator {
     }
 
   private:
+    // Found once for the weights that are mostly the same.
+    double steepness(const std::vector<Powers> &weights) {
+        const auto [known, fresh] = known_.try_emplace(weights, 0.0);
+        if (fresh) {
+            std::size_t boxes = 0;
+            known->second =
+                std::min(steepness_by_spread(weights), SteepestCorners(weights).steepness(boxes));
+            work_.take(2 * boxes);
+        }
+        return known->second;
+    }
+
     enum : unsigned { Axes = (1u << max_axes) - 1, Steps = 1u << max_axes, Other = 2u << max_axes };
     struct Axis {
         NodeId fraction;
@@ -263,6 +458,7 @@ class Interpolator {
     }
 
     Graph &graph_;
+    SteepnessOfWeights &known_;
     Work &work_;
     Expansion expansion_;
     std::vector<Axis> axes_;
@@ -273,8 +469,9 @@ class Interpolator {
 
 } // namespace
 
-std::optional<Interpolation> interpolation(Graph &graph, NodeId scalar, Work &work) {
-    return Interpolator(graph, work).of(scalar);
+std::optional<Interpolation> interpolation(Graph &graph, NodeId scalar, SteepnessOfWeights &known,
+                                           Work &work) {
+    return Interpolator(graph, known, work).of(scalar);
 }
 
 } // namespace fathom::proof

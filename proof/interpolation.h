@@ -5,6 +5,7 @@
 #include "ir/graph.h"
 #include "proof/work.h"
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct Interpolation {
     std::vector<ir::NodeId> along; // the scalars x
     double steepness = 0; // >= its slope by all x together, over the width of the corners' range
 };
-std::optional<Interpolation> interpolation(ir::Graph &graph, ir::NodeId scalar, Work &work);
+// By the weights' polynomials, what was found for them.
+using SteepnessOfWeights = std::map<std::vector<std::vector<double>>, double>;
+std::optional<Interpolation> interpolation(ir::Graph &graph, ir::NodeId scalar,
+                                           SteepnessOfWeights &known, Work &work);
 
 } // namespace fathom::proof

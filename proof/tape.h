@@ -6,6 +6,7 @@
 #include "ir/graph.h"
 #include "ir/interval.h"
 #include "proof/carried.h"
+#include "proof/interpolation.h"
 #include "proof/pieces.h"
 #include "proof/work.h"
 
@@ -192,6 +193,7 @@ struct Flattening {
     std::unordered_map<NodeId, NodeId> written{};
     std::vector<bool> cached{}; // by cached field: known by its bounds alone (Ranges::caches)
     std::unordered_map<NodeId, std::optional<Mean>> means{}; // by node, remembered over fields
+    SteepnessOfWeights weights{};                            // of what is interpolated
     const Ranges *ranges = nullptr; // of all that the fields read, or none: then no mean is found
     BoundCache *cache = nullptr;    // of answers to whole questions (question.h), or none
 };

@@ -193,7 +193,7 @@ Slot Flattener::mix(Scope &scope, NodeId id, Instruction out) {
 
 void Flattener::find_interpolation(Scope &scope, NodeId id, Instruction &out) {
     if (cancelling.empty()) return; // it jumps
-    const auto found = interpolation(graph, id, context.work);
+    const auto found = interpolation(graph, id, context.weights, context.work);
     if (!found) return;
     const std::vector<NodeId> parts = by_vector(found->along);
     const ir::Type type = ir::vector_type(int(found->along.size()));

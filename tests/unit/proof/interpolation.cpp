@@ -14,7 +14,8 @@ namespace {
 
 std::optional<proof::Interpolation> interpolation(Graph &graph, NodeId scalar) {
     proof::Work work;
-    return proof::interpolation(graph, scalar, work);
+    proof::SteepnessOfWeights known;
+    return proof::interpolation(graph, scalar, known, work);
 }
 
 // A weight as an expression, as a function, and by its slope.
@@ -38,12 +39,12 @@ const std::vector<Weight> weights{
      [](Graph &g, NodeId f) {
          return times(g, {f, f, g.sub(g.number(3), g.mul(g.number(2), f))});
      },
-     [](double f) { return f * f * (3 - 2 * f); }, [](double f) { return 6 * f * (1 - f); }, 0.94},
+     [](double f) { return f * f * (3 - 2 * f); }, [](double f) { return 6 * f * (1 - f); }, 0.998},
     {"smoothstep",
      [](Graph &g, NodeId f) {
          return g.make(Op::Smoothstep, {g.number(0), g.number(1), f});
      },
-     [](double f) { return f * f * (3 - 2 * f); }, [](double f) { return 6 * f * (1 - f); }, 0.94},
+     [](double f) { return f * f * (3 - 2 * f); }, [](double f) { return 6 * f * (1 - f); }, 0.998},
     {"a quintic",
      [](Graph &g, NodeId f) {
          const NodeId inner = g.sub(g.mul(g.number(6), f), g.number(15));
