@@ -9,7 +9,9 @@
 #include "ir/passes/walk.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace fathom::proof {
@@ -173,8 +175,74 @@ std::optional<Around> found_around(Flattening &context, NodeId m, NodeId g) {
                  across = along->across() * vanishing->size;
     const double by = vanishing->radial ? std::hypot(radial, across) : radial + across;
     if (!std::isfinite(by)) return {};
-    return around_of(graph, *along, m, by);
+    Around out = around_of(graph, *along, m, by);
+    out.is_apart = vanishing->radial;
+    out.radial = ir::rounding::up(radial, 16), out.across = ir::rounding::up(across, 16);
+    return out;
 }
+
+// Does an expression keep its value where [x, y], two coordinates of the point, are turned?
+struct AllAround {
+    Graph &graph;
+    NodeId x, y;
+    std::unordered_map<NodeId, bool> known{};
+
+    bool keeps(NodeId id) {
+        const ir::Graph::Reads reads = graph.reads(id);
+        if (reads.normal || reads.direction || reads.free_vars) return false;
+        if (!reads.point) return true;
+        if (const auto it = known.find(id); it != known.end()) return it->second;
+        known[id] = false; // while it is looked at
+        const bool out = known.size() <= max_nodes_of_turn && (by_parts(id) || by_squares(id));
+        return known[id] = out;
+    }
+
+  private:
+    bool by_parts(NodeId id) {
+        constexpr ir::OpSet opaque{Op::Point, Op::Loop, Op::Call, Op::LoopResult, Op::Cached};
+        const ir::Node node = graph[id];
+        if (opaque[node.op] || id == x || id == y || node.count == 0) return false;
+        if (node.op == Op::Swizzle && graph.arg(id, 0) == graph.arg(x, 0)) {
+            for (int i = 0; i < ir::components(node.type); ++i) {
+                const NodeId part = component_of(graph, id, i);
+                if (part == x || part == y) return false;
+            }
+            return true;
+        }
+        const std::vector<NodeId> args(graph.args(id).begin(), graph.args(id).end());
+        return std::ranges::all_of(args, [&](NodeId arg) { return keeps(arg); });
+    }
+    // A sum of x*x + y*y, times what keeps its value, and such.
+    bool by_squares(NodeId id) {
+        const Op op = graph[id].op;
+        if (op == Op::Length) {
+            const NodeId v = graph.arg(id, 0);
+            return by_squares(graph.make(Op::Dot, {v, v}));
+        }
+        if (op != Op::Dot && op != Op::Add) return false;
+        const auto terms = terms_of(graph, id);
+        if (!terms) return false;
+        std::map<std::vector<NodeId>, std::array<double, 2>> squares; // by the other factors
+        for (const Term &term : *terms) {
+            std::vector<NodeId> others;
+            std::array<int, 2> times{};
+            for (const NodeId factor : term.factors) {
+                if (factor == x || factor == y)
+                    ++times[factor == x ? 0 : 1];
+                else if (factor == id || !keeps(factor))
+                    return false;
+                else
+                    others.push_back(factor);
+            }
+            if (times[0] + times[1] == 0) continue;
+            if (times[0] != 2 && times[1] != 2) return false;
+            if (times[0] + times[1] != 2) return false;
+            squares[others][times[0] == 2 ? 0 : 1] += term.by;
+        }
+        return std::ranges::all_of(squares,
+                                   [](const auto &one) { return one.second[0] == one.second[1]; });
+    }
+};
 
 // m and b of m [cos(b), sin(b)], in either order and with any signs.
 struct PolarVector {
@@ -219,6 +287,38 @@ std::optional<Around> around_axis(Flattening &context, NodeId product) {
     const NodeId a = graph.arg(product, 0), b = graph.arg(product, 1);
     if (const auto found = found_around(context, a, b)) return found;
     return found_around(context, b, a);
+}
+
+std::optional<BesideTurn> beside_turn(Flattening &context, NodeId sum) {
+    Graph &graph = context.graph;
+    const ir::Node node = graph[sum];
+    if ((node.op != Op::Add && node.op != Op::Sub) || node.type != ir::Type::Float) return {};
+    for (int i = 0; i < 2; ++i) {
+        BesideTurn out{graph.arg(sum, 1 - i), {}, 1};
+        NodeId product = graph.arg(sum, i);
+        if (!graph.reads(out.still).point || !angle_in(graph, product)) continue;
+        auto around = around_axis(context, product);
+        while (!around) { // a number times it
+            NodeId inner;
+            if (graph[product].op == Op::Neg) inner = graph.arg(product, 0);
+            for (int k = 0; graph[product].op == Op::Mul && k < 2; ++k)
+                if (const auto by = graph.as_number(graph.arg(product, k)))
+                    inner = graph.arg(product, 1 - k), out.by *= std::fabs(*by);
+            if (!inner) break;
+            product = inner, around = around_axis(context, product);
+        }
+        if (!around || !around->is_apart) continue;
+        const NodeId y = graph.arg(around->angle, 0), x = graph.arg(around->angle, 1);
+        const auto is_coordinate = [&](NodeId id) {
+            return graph[id].op == Op::Swizzle && graph[graph.arg(id, 0)].op == Op::Point;
+        };
+        if (x == y || !is_coordinate(x) || !is_coordinate(y) || graph.arg(x, 0) != graph.arg(y, 0))
+            continue; // of one point
+        if (!AllAround{graph, x, y}.keeps(out.still)) continue;
+        out.turns = *around;
+        return out;
+    }
+    return {};
 }
 
 bool is_polar_vector(ir::Graph &graph, NodeId vector) {

@@ -16,8 +16,19 @@ struct Around {
     double by = 1;
     NodeId vanishing{}, rest{};
     double rest_by = 0;
+    // Of a product of r and the angle alone: its slope along r, and across it.
+    bool is_apart = false;
+    double radial = 0, across = 0;
 };
 std::optional<Around> around_axis(Flattening &context, NodeId product);
+// A sum of a number that is the same all around that axis, and `by` times such a product; the axis is
+// one of coordinates.
+struct BesideTurn {
+    NodeId still;
+    Around turns;
+    double by = 1;
+};
+std::optional<BesideTurn> beside_turn(Flattening &context, NodeId sum);
 // The same of m [cos(b), sin(b)], m of the vector's length and b of its angle.
 bool is_polar_vector(ir::Graph &graph, NodeId vector);
 std::optional<Around> vector_around_axis(Flattening &context, NodeId vector);

@@ -92,6 +92,7 @@ struct Flattener {
     Slot sum(Scope &scope, NodeId id, Instruction out);
 
     void find_around(Scope &scope, NodeId id, Instruction &out);
+    void find_beside_turn(Scope &scope, NodeId id, Instruction &out);
     void find_parallel(Scope &scope, NodeId id, Instruction &out);
     void find_radial(Scope &scope, NodeId id, Instruction &out);
     void find_ellipsoid(Scope &scope, NodeId id, Instruction &out);

@@ -175,6 +175,7 @@ class Machine {
     void hold_norm(Slot s, double most);
     void hold_turning(const Instruction &instruction);
     void hold_around(const Instruction &instruction);
+    void hold_beside_turn(const Instruction &instruction);
     void hold_between(const Instruction &instruction);
     void hold_along(const Instruction &instruction);
     void hold_ellipsoid(const Instruction &instruction);

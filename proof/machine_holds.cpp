@@ -90,6 +90,19 @@ void Machine::hold_around(const Instruction &instruction) {
     hold_norm(out, most);
 }
 
+// What turns about an axis changes across it, in which what is the same all around does not.
+void Machine::hold_beside_turn(const Instruction &instruction) {
+    const auto &[still, radial, across, vanishing, rest, rest_by] = *instruction.beside_turn;
+    const Slot out = instruction.out;
+    if (norm_[out] == infinity || odd_[tape_.first[out]] || odd_[tape_.first[still]]) return;
+    double most = std::hypot(norm_[still] + radial, across);
+    if (rest_by > 0) {
+        if (odd_[tape_.first[rest]] || odd_[tape_.first[vanishing]]) return;
+        most += times(times(value(vanishing, 0).magnitude(), rest_by), norm_[rest]);
+    }
+    hold_norm(out, up(most, 8));
+}
+
 // Between values at corners that stand still, wherever they do not jump (interpolation.h).
 void Machine::hold_between(const Instruction &instruction) {
     const Slot out = instruction.out, vector = instruction.between->vector;

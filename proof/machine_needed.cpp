@@ -66,6 +66,11 @@ void Machine::need_args(const Instruction &in, std::vector<bool> &wanted) const 
     if (in.around) wanted[in.around->vector] = true;
     if (in.around && in.around->rest_by > 0)
         wanted[in.around->vanishing] = wanted[in.around->rest] = true;
+    if (in.beside_turn) {
+        wanted[in.beside_turn->still] = true;
+        if (in.beside_turn->rest_by > 0)
+            wanted[in.beside_turn->vanishing] = wanted[in.beside_turn->rest] = true;
+    }
     if (in.along) wanted[in.along->vector] = wanted[in.along->factor] = true;
     if (in.ellipsoid) {
         for (const Slot s : in.ellipsoid->inverse) wanted[s] = true;

@@ -41,6 +41,7 @@ void Machine::step(const Instruction &instruction) {
     if (instruction.turning) hold_turning(instruction);
     if (instruction.mean) hold_mean(instruction);
     if (instruction.around) hold_around(instruction);
+    if (instruction.beside_turn) hold_beside_turn(instruction);
     if (instruction.between) hold_between(instruction);
     if (instruction.along) hold_along(instruction);
     if (instruction.ellipsoid) hold_ellipsoid(instruction);

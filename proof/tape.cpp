@@ -2,6 +2,7 @@
 #include "proof/tape.h"
 
 #include "ir/passes/inline.h"
+#include "proof/around.h"
 #include "proof/borders.h"
 #include "proof/discontinuities.h"
 #include "proof/ellipsoids.h"
@@ -177,6 +178,21 @@ Slot Flattener::emit_unwound(Scope &scope, NodeId id, Instruction out) {
     turned.stands_at = at->second;
     out.args = {emit(scope, std::move(turned))};
     return emit(scope, std::move(out));
+}
+
+void Flattener::find_beside_turn(Scope &scope, NodeId id, Instruction &out) {
+    if (!context.ranges || cancelling.empty()) return; // its angle jumps
+    const auto found = beside_turn(context, id);
+    if (!found || !cancelling.contains(found->turns.angle)) return;
+    const Around &turns = found->turns;
+    Instruction::BesideTurn made;
+    made.still = slot(scope, found->still);
+    made.radial = found->by * turns.radial, made.across = found->by * turns.across;
+    if (turns.rest) {
+        made.vanishing = slot(scope, turns.vanishing), made.rest = slot(scope, turns.rest);
+        made.rest_by = found->by * turns.rest_by;
+    }
+    out.beside_turn = made;
 }
 
 // From the exponent 2 on it is no steeper than the vector of its parts.

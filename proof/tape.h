@@ -97,6 +97,15 @@ struct Instruction {
         double rest_by = 0;
     };
     std::optional<AroundAxis> around;
+    // Of a sum of such a product and what is the same all around the axis (around.h): no steeper than
+    // `still` and `radial`, and `across` at right angles to these, and what `rest` adds.
+    struct BesideTurn {
+        Slot still = 0;
+        double radial = 0, across = 0;
+        Slot vanishing = 0, rest = 0;
+        double rest_by = 0;
+    };
+    std::optional<BesideTurn> beside_turn;
     // Of a product that is along a vector (radial.h): it is no steeper than the factor's size times
     // the vector, or than the vector by that size.
     struct Along {

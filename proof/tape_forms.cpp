@@ -180,6 +180,7 @@ Slot Flattener::sum(Scope &scope, NodeId id, Instruction out) {
     if (out.type != ir::Type::Float) return emit(scope, std::move(out));
     find_mean(scope, id, out);
     find_interpolation(scope, id, out);
+    find_beside_turn(scope, id, out);
     return emit_turned(scope, id, std::move(out));
 }
 

@@ -175,7 +175,48 @@ class Turned : public NearlyRight {
     std::string of(std::initializer_list<const char *> texts) { return Chance::of(texts); }
 };
 
+// What turns about an axis and vanishes on it, beside what is the same all around, or nearly (2.19).
+class BesideTurn : public Chance {
+  public:
+    using Chance::Chance;
+
+    std::string scene() {
+        const std::string rate = of({"3", "5", "k", "8", "1", "2"}),
+                          rest = of({"", "", " + time", " - 4 * r", " + 2 * p.y", " + q"});
+        std::string out = "param k = 4 in 2..6\nparam q = 0.3 in -1..1\n"
+                          "implicit(p => {\n  let r = length(p.xz)\n  let a = atan(p.z, p.x)\n";
+        out += "  let turns = " + of({"sin(", "cos("}) + rate + " * a" + rest + ")\n";
+        out += "  let m = " +
+               of({"r", "min(r, 0.5)", "smoothstep(0, 0.6, r)", "tanh(r)", "p.x", "abs(p.z)",
+                   "clamp(r, 0, 0.4)", "0.5 * sin(r)"}) +
+               "\n";
+        out += "  let still = " +
+               of({"length(p) - 1", "r - 1", "length(vec2(r - 1, p.y)) - 0.3", "r + 0.3 * p.y",
+                   "max(r - 1, abs(p.y) - 0.5)", "dot(p.xz, p.xz) - 1", "sqrt(dot(p, p) + 0.1) - 1",
+                   // what is not the same all around
+                   "length(p - vec3(0.3, 0, 0)) - 1", "p.x", "length(p.xy) - 1", "p.x + r",
+                   "length(vec3(p.x, p.y, 1.1 * p.z)) - 1", "length(p * vec3(1, 2, 1)) - 1",
+                   "abs(p.x) - 1", "p.x * p.z + r"}) +
+               "\n";
+        const std::string by = between(0.05, 0.5), product = of({"turns * m", "m * turns"});
+        switch (pick(4)) {
+        case 0: out += "  let d = still - " + by + " * (" + product + ")\n"; break;
+        case 1: out += "  let d = " + by + " * turns * m + still\n"; break;
+        case 2: out += "  let d = still - (" + product + ") * " + by + "\n"; break;
+        default: out += "  let d = still + " + by + " * m * turns\n"; break;
+        }
+        return out + "  " + of({"d", "max(d, abs(p.y) - 0.6)", "min(d, p.y + 0.5)"}) +
+               "\n}, within: ball(2))\n";
+    }
+};
+
 } // namespace
+
+TEST_CASE("what turns beside what is the same all around is no steeper than proved") {
+    const Judged judged = judge_scenes<BesideTurn>(effort(60), 1000);
+    CHECK(judged.wrong == 0);
+    CHECK(judged.accepted > judged.scenes / 3);
+}
 
 TEST_CASE("hexagons of two lattices are refused, or do not jump") {
     const Judged judged = judge_scenes<Hexagons>(effort(60), 1000);
