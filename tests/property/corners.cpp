@@ -202,7 +202,59 @@ class Swapped : public Chance {
     }
 };
 
+// Solids in frames of unit vectors that move, or of what nearly are such (2.47).
+class Framed : public Chance {
+  public:
+    using Chance::Chance;
+
+    std::string scene() {
+        std::string out = "param k = 0.5 in 0.2..1\nparam n = 1 in -1..1\nimplicit(p => {\n";
+        out += "  let a = " + vector() + "\n  let b = " + vector() + " + vec3(0, 0, 2.5)\n";
+        out += "  let d = b - a\n  let up = " +
+               of({"vec3(0, 1, 0)", "vec3(1, 0, 0)", "vec3(0.6, 0.8, 0)", "vec3(0, k, 0.1)"}) +
+               "\n";
+        out += "  let w = " +
+               of({"normalize(d)", "normalize(d)", "d / length(d)", "d / sqrt(dot(d, d))",
+                   "0.4 * d"}) +
+               "\n";
+        out += "  let u = " +
+               of({"normalize(cross(w, up))", "normalize(cross(up, w))", "normalize(cross(d, up))",
+                   "cross(w, up)"}) +
+               "\n";
+        out += "  let v = " +
+               of({"cross(u, w)", "cross(w, u)", "normalize(cross(u, d))", "cross(u, up)", "up"}) +
+               "\n  let o = p - " + of({"a", "b", "vec3(0)", "0.5 * (a + b)"}) + "\n";
+        out += "  let q = " +
+               of({"vec3(dot(u, o), dot(v, o), dot(w, o))", "o * mat3(u, v, w)",
+                   "transpose(mat3(u, v, w)) * o", "mat3(u, v, w) * o",
+                   "u * o.x + v * o.y + w * o.z"}) +
+               "\n";
+        return out + "  " +
+               of({"length(max(abs(q) - vec3(0.3, 0.2, 0.5), 0)) - 0.1",
+                   "max(abs(q.x) - 0.3, length(q.yz) - 0.4)",
+                   "length(vec2(length(q.xz) - 0.5, q.y)) - 0.2", "q.x + 0.1 * sin(4 * q.y)",
+                   "length(q) - 0.5", "min(length(q.xy) - 0.2, abs(q.z) - 0.1)"}) +
+               "\n}, within: ball(2))\n";
+    }
+
+  private:
+    std::string vector() {
+        const auto part = [&] {
+            return of({"0.3", "-0.4", "k", "n", "0.5 * cos(time)", "0.5 * sin(time)", "k * n",
+                       "0.2 + 0.3 * k"});
+        };
+        const std::string x = part(), y = part();
+        return "vec3(" + x + ", " + y + ", " + part() + ")";
+    }
+};
+
 } // namespace
+
+TEST_CASE("what stands in a frame that moves is refused, or is no steeper than proved") {
+    const Judged judged = judge_scenes<Framed>(effort(30), 400);
+    CHECK(judged.wrong == 0);
+    CHECK(judged.accepted > judged.scenes / 2);
+}
 
 TEST_CASE("folds that swap and turn are no steeper than proved") {
     const Judged judged = judge_scenes<Swapped>(effort(20), 400);
