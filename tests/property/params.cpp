@@ -233,9 +233,9 @@ TEST_CASE("bounds that follow the time hold at every moment, and cost nothing at
          "implicit(p => length(p) - 1 - 0.2 * fract(time) * sin(5 * p.x), within: ball(2))\n", 2,
          1.001, 2.01},
         {"a scale",
-         "fn size() = 1 + 0.5 * sin(2 * time)\n"
-         "implicit(p => length(p) - 1 - 0.1 * noise(3 * p * size()) / size(), within: ball(2))\n",
-         0, 2.5, 2.6},
+         "fn size() = 1 + 0.8 * sin(2 * time)\n"
+         "implicit(p => length(p) - 1 - 0.1 * noise(3 * p * size()), within: ball(2))\n",
+         0, 2.5, 3.1},
         {"in a loop",
          "fn f(p: vec3) -> float {\n  var s = 0.0\n"
          "  for i in 0..3 { s = s + fract(time) * sin(p.x * (i + 1)) / 3 }\n  s\n}\n"
