@@ -320,7 +320,7 @@ void divide_for_shape(const Field &field, const Settings &settings, std::size_t 
 }
 
 // Whether cells of another size show the same pieces and handles: of twice the side or, where these do
-// not, of half of it. Else what those show, if they may be tried.
+// not, of half of it, if they may be tried. Else what those show.
 std::optional<Form> finer_form(const ir::Scene &scene, const Settings &settings, const Made &made,
                                const Form &form, bool &same) {
     constexpr double most_nodes_of_finer = 0.6e6;
@@ -331,7 +331,10 @@ std::optional<Form> finer_form(const ir::Scene &scene, const Settings &settings,
     other.side = 2 * side;
     const Made coarser = make_plain_mesh(scene, other);
     same = coarser.failure == Failure::None && form_of(coarser.mesh) == form;
-    if (same || 4 * double(made.octree.nodes.size()) > most_nodes_of_finer) return std::nullopt;
+    if (same) return std::nullopt;
+    same = 4 * double(made.octree.nodes.size()) >
+           most_nodes_of_finer; // larger cells alone are no sign
+    if (same) return std::nullopt;
     other.side = 0.5 * side;
     const Made finer = make_plain_mesh(scene, other);
     if (finer.failure != Failure::None) return std::nullopt;

@@ -33,6 +33,7 @@ struct Flattener {
     std::unordered_set<NodeId> cancelling; // steps and choices
     std::unordered_set<NodeId> stepped;    // angles that steps alone read
     std::unordered_set<NodeId> own;        // what the field is made of as it is given
+    std::unordered_set<NodeId> indices;    // of loops
 
     // What a rewriting puts in the place of a step that cancels does too, where all uses of it are
     // those of that step: what the field has besides, equal and so the same node, may not.
@@ -120,6 +121,7 @@ struct Flattener {
 
     std::unordered_map<NodeId, std::vector<Slot>> loop_results;
 
+    bool counts_turns(NodeId id) const;
     Slot loop(Scope &scope, NodeId id);
 };
 

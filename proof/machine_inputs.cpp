@@ -87,8 +87,7 @@ void Step::read() {
         machine.value_[at] = made->value[0];
 }
 
-// A hash of whole numbers that are known, as a loop's variable in its turn, is known too: single
-// precision has them exactly.
+// A hash of a loop's number is known in each turn: single precision has it exactly.
 void Step::hash() {
     constexpr double exact_below = 0x1p24;
     bool fixed = true, known = in.whole;

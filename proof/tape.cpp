@@ -222,7 +222,7 @@ Slot Flattener::flatten_node(Scope &scope, NodeId id) {
     if (node.op == Op::Mod)
         out.whole = is_whole_power_of_two(graph, graph.arg(id, 1)) &&
                     is_made_whole(graph, graph.arg(id, 0));
-    if (node.op == Op::Hash) out.whole = is_made_whole(graph, graph.arg(id, 0));
+    if (node.op == Op::Hash) out.whole = counts_turns(graph.arg(id, 0));
     if (winding && (node.op == Op::Sin || node.op == Op::Cos) && graph.reads(id).point)
         return emit_unwound(scope, id, std::move(out));
     switch (look_of_op[node.op]) {
@@ -280,6 +280,25 @@ Slot Flattener::call(Scope &scope, NodeId id, ir::FunctionId which) {
     return slot(inner, function.result);
 }
 
+// Made of whole numbers and of loops' numbers alone: known in each turn. Of what else is one number,
+// as floor(x) in a cell that is looked at, others are looked at with it: those of its period.
+bool Flattener::counts_turns(NodeId id) const {
+    constexpr ir::OpSet made{Op::Add, Op::Sub, Op::Mul, Op::Neg, Op::ToFloat, Op::Make, Op::Splat};
+    constexpr std::size_t most = 16;
+    std::vector<NodeId> todo{id};
+    for (std::size_t seen = 0; !todo.empty(); ++seen) {
+        const NodeId at = todo.back();
+        todo.pop_back();
+        if (seen == most) return false;
+        if (indices.contains(at)) continue;
+        if (const auto number = graph.as_number(at); number && *number == std::round(*number))
+            continue;
+        if (!made[graph[at].op]) return false;
+        todo.insert(todo.end(), graph.args(at).begin(), graph.args(at).end());
+    }
+    return true;
+}
+
 Slot Flattener::loop(Scope &scope, NodeId id) {
     const ir::Loop loop = graph.loop(ir::LoopId{graph[id].payload});
     Loop plan;
@@ -293,6 +312,7 @@ Slot Flattener::loop(Scope &scope, NodeId id) {
     inner.block = &plan.body;
     plan.index = fresh(ir::Type::Int, false);
     inner.slots[loop.index] = plan.index;
+    indices.insert(loop.index);
     inner.depends[loop.index] = true;
     for (NodeId var : loop.vars) {
         Slot s = fresh(graph[var].type, true);

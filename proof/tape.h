@@ -59,8 +59,7 @@ struct Instruction {
     bool stepped = false; // an angle that steps alone read (polar.h)
     // Of a Fract or Mod: single precision may have its argument so wrong that it is any (exact.h).
     bool scatters = false;
-    bool whole =
-        false; // a Mod of whole numbers by a power of two from 1 on, or their Hash (exact.h)
+    bool whole = false; // a Mod of whole numbers by a power of two from 1 on; a Hash of a turn
     bool wavers =
         false; // it reads a number that is not the same one twice for rounding (steadiness.h)
     bool has_majorant = false; // a quotient whose divisor is scaled as it is (majorants.h)
