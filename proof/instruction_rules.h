@@ -59,6 +59,7 @@ struct Step {
     void table_read();
     void read();
     void hash();
+    Interval hash_of_turn() const;
     void perlin();
     void simplex();
     void value_noise();

@@ -88,21 +88,25 @@ void Step::read() {
 }
 
 // A hash of a loop's number is known in each turn: single precision has it exactly.
-void Step::hash() {
+Interval Step::hash_of_turn() const {
     constexpr double exact_below = 0x1p24;
-    bool fixed = true, known = in.whole;
-    ir::Constant whole{
-        machine.ranges_.scene->graph[machine.ranges_.scene->graph.arg(in.node, 0)].type, {}};
+    const ir::Graph &graph = machine.ranges_.scene->graph;
+    ir::Constant whole{graph[graph.arg(in.node, 0)].type, {}};
     for (int c = 0; c < size(0); ++c) {
         const Interval v = value(0, c);
         const double only = std::round(v.middle());
-        fixed = fixed && zero(grad(0, c)) && (!in.wavers || v.is_point());
-        known = known && v.lo > only - 1 && v.hi < only + 1 && std::fabs(only) < exact_below;
+        if (!(v.lo > only - 1 && v.hi < only + 1 && std::fabs(only) < exact_below)) return {0, 1};
         whole.value[static_cast<std::size_t>(c)] = only;
     }
-    const auto made = known ? ir::evaluate_single(in.op, in.type, {&whole, 1}, in.payload)
-                            : std::optional<ir::Constant>();
-    set(0, made ? Interval(made->value[0]) : Interval(0, 1), none);
+    const auto made = ir::evaluate_single(in.op, in.type, {&whole, 1}, in.payload);
+    return made ? Interval(made->value[0]) : Interval(0, 1);
+}
+
+void Step::hash() {
+    bool fixed = true;
+    for (int c = 0; c < size(0); ++c)
+        fixed = fixed && zero(grad(0, c)) && (!in.wavers || value(0, c).is_point());
+    set(0, in.whole ? hash_of_turn() : Interval(0, 1), none);
     if (!fixed || norm(0) > 0) return fail(Trouble::Jump);
     finish(0, any_odd);
 }

@@ -16,7 +16,8 @@ std::optional<ForeignSyntax::Changed> ForeignSyntax::changed_by(Index open) cons
     std::optional<Changed> out;
     const Index close = match(open);
     std::size_t place = 0;
-    for (Index i = open + 1; i<close; i = match(i)> i ? match(i) + 1 : i + 1) {
+    for (Index i = open + 1; i < close; ++i) {
+        if (match(i) > i) i = match(i);
         if (kind(i) == Tok::Comma) ++place;
         if (text(i) == "out") return std::nullopt; // has no value before
         if (text(i) != "inout") continue;
