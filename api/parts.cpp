@@ -57,6 +57,7 @@ void keep_only(ir::Scene &scene, const std::vector<ir::TopLevel> &shapes) {
     }
     scene.top_level = shapes;
     scene.framed = {};
+    scene.framed_reach.clear();
     ir::lower(scene);
 }
 

@@ -31,52 +31,59 @@ std::vector<double> moments_of(const ir::Scene &scene, ir::FunctionId part, ir::
     return all;
 }
 
-ir::Box over_time(const ir::Scene &scene, ir::FunctionId part, const ir::Box &domain,
-                  ir::Interval times, double &work) {
-    ir::Box box;
+cpu::Extent over_time(const ir::Scene &scene, ir::FunctionId part, const ir::Box &domain,
+                      ir::Interval times, double &work) {
+    const std::vector<std::array<double, 3>> directions = ir::framing_directions();
+    cpu::Extent extent;
     for (const double time : moments_of(scene, part, times))
-        box = ir::hull(box, cpu::solid_box(scene, part, domain, time, work));
-    return box;
+        extent = cpu::hull(std::move(extent),
+                           cpu::solid_extent(scene, part, domain, directions, time, work));
+    return extent;
 }
 
-// The parts that reach farthest to each of the six sides.
+// The parts that reach farthest to each of the six sides and along each of the directions.
 std::vector<std::size_t> outermost(const std::vector<ir::Scene::Framed> &parts,
+                                   std::span<const std::array<double, 3>> directions,
                                    std::vector<std::size_t> of, std::size_t a_side) {
-    if (of.size() <= 6 * a_side) return of;
+    std::vector<std::array<double, 3>> ways{{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                            {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
+    ways.insert(ways.end(), directions.begin(), directions.end());
+    if (of.size() <= ways.size() * a_side) return of;
     std::vector<std::size_t> chosen;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        for (const bool up : {true, false}) {
-            std::ranges::nth_element(of, of.begin() + static_cast<std::ptrdiff_t>(a_side), {},
-                                     [&](std::size_t k) {
-                                         const ir::Box &box = parts[k].bounds;
-                                         const double far = up ? -box.hi[axis] : box.lo[axis];
-                                         return std::pair(far, k);
-                                     });
-            chosen.insert(chosen.end(), of.begin(),
-                          of.begin() + static_cast<std::ptrdiff_t>(a_side));
-        }
+    for (const std::array<double, 3> &way : ways) {
+        const auto near = [&](std::size_t k) {
+            return std::pair(-ir::reach_of(parts[k].bounds, way), k);
+        };
+        const auto end = of.begin() + static_cast<std::ptrdiff_t>(a_side);
+        std::ranges::nth_element(of, end, {}, near);
+        chosen.insert(chosen.end(), of.begin(), end);
+    }
     std::ranges::sort(chosen);
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     return chosen;
 }
 
-bool within(const ir::Box &box, const ir::Box &outer) {
+bool within(const ir::Box &box, const cpu::Extent &outer,
+            std::span<const std::array<double, 3>> directions) {
     for (std::size_t i = 0; i < 3; ++i)
-        if (box.lo[i] < outer.lo[i] || box.hi[i] > outer.hi[i]) return false;
+        if (box.lo[i] < outer.box.lo[i] || box.hi[i] > outer.box.hi[i]) return false;
+    for (std::size_t k = 0; k < outer.reach.size(); ++k)
+        if (ir::reach_of(box, directions[k]) > outer.reach[k]) return false;
     return true;
 }
 
-// The box of the parts that have bounds: first that of the outermost, which mostly holds the bounds
+// The extent of the parts that have bounds: first that of the outermost, which mostly holds the bounds
 // of all others; then of more of those that it does not.
-ir::Box of_bounded(ir::Scene &scene, ir::Interval times, double &work) {
+cpu::Extent of_bounded(ir::Scene &scene, ir::Interval times, double &work) {
     const std::vector<ir::Scene::Framed> &parts = scene.framed_bounded;
+    const std::vector<std::array<double, 3>> directions = ir::framing_directions();
     std::vector<std::size_t> left(parts.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
-    ir::Box found;
+    cpu::Extent found;
     for (std::size_t a_side = first_a_side; !left.empty(); a_side *= 4) {
         std::vector<ir::NodeId> distances;
         ir::Box domain;
-        const std::vector<std::size_t> chosen = outermost(parts, left, a_side);
+        const std::vector<std::size_t> chosen = outermost(parts, directions, left, a_side);
         for (const std::size_t k : chosen) {
             distances.push_back(parts[k].distance);
             domain = ir::hull(domain, parts[k].bounds);
@@ -86,9 +93,10 @@ ir::Box of_bounded(ir::Scene &scene, ir::Interval times, double &work) {
                                       {},
                                       {scene.framed_point},
                                       scene.graph.make(ir::Op::Union, ir::Type::Float, distances)});
-        found = ir::hull(found, over_time(scene, together, domain, times, work));
+        found = cpu::hull(std::move(found), over_time(scene, together, domain, times, work));
         std::erase_if(left, [&](std::size_t k) {
-            return within(parts[k].bounds, found) || std::ranges::binary_search(chosen, k);
+            return within(parts[k].bounds, found, directions) ||
+                   std::ranges::binary_search(chosen, k);
         });
     }
     return found;
@@ -120,20 +128,23 @@ void find_framing(ir::Scene &scene, ir::Interval times, const std::optional<ir::
                   Diagnostics &diagnostics) {
     if (scene.camera.given || scene.top_level.empty()) return;
     double work = most_work;
-    scene.framed = of_bounded(scene, times, work);
+    cpu::Extent found = of_bounded(scene, times, work);
     constexpr double far = cpu::endless_from;
     const ir::Box space{{-far, -far, -far}, {far, far, far}};
     bool endless = false;
     for (const ir::FunctionId part : scene.framed_alone) {
-        const ir::Box box = over_time(scene, part, space, times, work);
+        const cpu::Extent extent = over_time(scene, part, space, times, work);
+        const ir::Box &box = extent.box;
         bool inside = true;
         for (std::size_t i = 0; i < 3; ++i)
             inside = inside && (box.empty() || (box.lo[i] > -far / 2 && box.hi[i] < far / 2));
         if (inside)
-            scene.framed = ir::hull(scene.framed, box);
+            found = cpu::hull(std::move(found), extent);
         else
             endless = true;
     }
+    scene.framed = found.box;
+    if (!found.box.empty()) scene.framed_reach = std::move(found.reach);
     if (!scene.framed.empty() || work <= 0) return; // what was not found may be there
     const Span span = scene.top_level.front().span;
     if (endless)
@@ -191,7 +202,7 @@ void tell_of_view_inside(const ir::Scene &scene, double time, Diagnostics &diagn
         tell("the view begins at [{:.3g}, {:.3g}, {:.3g}], within the solid, and so shows nothing "
              "of its surface");
     if (!scene.camera.given)
-        told.note("without a `camera(…)` the whole solid is framed from outside of its box");
+        told.note("without a `camera(…)` the whole solid is framed from outside");
     told.help(
         "write a `camera(at: …, look_at: …)` from a place outside the solid or in a hollow of "
         "it, or cut the solid open, as with `- plane(Z, 0)`");

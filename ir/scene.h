@@ -266,8 +266,10 @@ struct Scene {
     double far = 0;                 // a far limit for rays
 
     // What a view without a camera frames: the box of the solid itself at the params' present
-    // values (driver/framing.h). Empty: `bounds`.
+    // values (driver/framing.h), empty: `extent`; and how far it reaches along each of
+    // framing_directions() (view.h), empty: as far as the box.
     Box framed;
+    std::vector<double> framed_reach;
 };
 
 } // namespace fathom::ir

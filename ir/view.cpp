@@ -122,7 +122,80 @@ std::pair<glm::dvec3, double> sphere_of(const Box &box) {
     return {middle, radius > 0 ? radius : 1};
 }
 
+// Without a camera: what part of the picture the solid fills, at most, of a wider one than the last of
+// `widths` what is in its middle; and the slopes of the planes through the viewer that it touches then,
+// at the right and the left of pictures that are that many times as wide as high. A solid's reach
+// along `side - slope*forward` is a convex function of the slope, so between two of them it is at most
+// what the chord has.
+constexpr double filled = 0.9;
+const double square_slope = filled * std::tan(default_fov / 2);
+constexpr std::array<double, 3> widths{0, 1, 4.0 / 3};
+
+View default_view() { return look_at({3, 3, 5}, {0, 0, 0}, std::tan(default_fov / 2), false); }
+
+// At a width, of a side's reach at each of `widths`.
+double on_chord(const double *reach, double width) {
+    std::size_t k = 1;
+    while (k + 1 < widths.size() && width > widths[k]) ++k;
+    const double t = (width - widths[k - 1]) / (widths[k] - widths[k - 1]);
+    return (1 - t) * reach[k - 1] + t * reach[k];
+}
+
+// As near as what reaches so far along framing_directions() fits; between those sides of the picture
+// that leave it more room than it needs, in the middle.
+View fitted(View view, std::span<const double> reach, const Box &box, double aspect) {
+    const double width = std::min(aspect, widths.back());
+    const double right = on_chord(&reach[0], width), left = on_chord(&reach[widths.size()], width),
+                 up = reach[2 * widths.size()], down = reach[2 * widths.size() + 1];
+    const double half = 0.5 * std::max(up + down, (right + left) / width);
+    const auto [center, radius] = sphere_of(box);
+    const double middle = glm::dot(center, view.forward);
+    view.focus = std::max(middle + half / square_slope, 1e-3 * radius);
+    view.origin = 0.5 * (right - left) * view.right + 0.5 * (up - down) * view.up +
+                  (middle - view.focus) * view.forward;
+    return view;
+}
+
+// The box; a cube where nothing has an end, or all of it is one point.
+Box with_size(const Box &box) {
+    if (box.finite() && box.lo != box.hi) return box;
+    Box cube{{-1, -1, -1}, {1, 1, 1}};
+    for (std::size_t i = 0; i < 3 && box.finite(); ++i)
+        cube.lo[i] += box.lo[i], cube.hi[i] += box.lo[i];
+    return cube;
+}
+
+// Along each of framing_directions(): of the solid, where that was looked for; else of its box.
+std::vector<double> reach_of(const Scene &scene, const Box &box) {
+    std::vector<double> reach;
+    for (const std::array<double, 3> &way : framing_directions()) {
+        const double known = reach_of(box, way);
+        const bool looked_for = reach.size() < scene.framed_reach.size();
+        reach.push_back(looked_for ? std::min(known, scene.framed_reach[reach.size()]) : known);
+    }
+    return reach;
+}
+
 } // namespace
+
+double reach_of(const Box &box, const std::array<double, 3> &direction) {
+    double reach = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        reach += direction[i] * (direction[i] > 0 ? box.hi[i] : box.lo[i]);
+    return reach;
+}
+
+std::vector<std::array<double, 3>> framing_directions() {
+    const View view = default_view();
+    std::vector<std::array<double, 3>> all;
+    const auto add = [&](const glm::dvec3 &way) { all.push_back({way.x, way.y, way.z}); };
+    const glm::dvec3 back = -square_slope * view.forward;
+    for (const glm::dvec3 &side : {view.right, -view.right})
+        for (const double width : widths) add(side + width * back);
+    add(view.up + back);
+    add(-view.up + back);
+    return all;
+}
 
 std::array<double, 16> value_of(const Scene &scene, NodeId id, double time) {
     if (!id) return {};
@@ -183,25 +256,11 @@ View turned(View view, double around, double above, double distance) {
     return view;
 }
 
-View frame_sphere(View view, glm::dvec3 center, double radius, double aspect) {
-    const double narrow = std::min(aspect, 1.0);
-    if (view.orthographic) {
-        view.extent = radius / narrow;
-        view.focus = 2 * radius;
-    } else {
-        view.focus = radius / std::sin(std::atan(view.extent * narrow));
-    }
-    view.origin = center - view.forward * view.focus;
-    return view;
-}
-
 View view_of(const Scene &scene, double time, double aspect) {
     const Camera &camera = scene.camera;
     if (!camera.given) {
-        const auto [center, radius] = sphere_of(scene.framed.empty() ? scene.extent : scene.framed);
-        const View from = look_at(center + glm::dvec3(3, 2, 5), center, std::tan(default_fov / 2),
-                                  camera.orthographic);
-        return frame_sphere(from, center, radius, aspect);
+        const Box box = with_size(scene.framed.empty() ? scene.extent : scene.framed);
+        return fitted(default_view(), reach_of(scene, box), box, aspect);
     }
     const glm::dvec3 at = triple_of(scene, camera.at, time),
                      target = triple_of(scene, camera.look_at, time);

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <glm/vec3.hpp>
+#include <vector>
 
 namespace fathom::ir {
 
@@ -28,12 +29,17 @@ View look_at(glm::dvec3 position, glm::dvec3 target, double extent, bool orthogr
 // Sets Scene::bounds, extent and far from what is known of its shapes, at the time 0.
 void find_extent(Scene &scene);
 
-// The scene's camera, or the rule of semantics.md, 23: from [3, 2, 5]'s direction, framing the
-// sphere about Scene::framed, 45 degrees. `aspect`: width / height.
+// The scene's camera, or the rule of semantics.md, 23: from [3, 3, 5]'s direction, 45 degrees, as near
+// as the solid fills nine tenths of the picture's height, or of its width, or of four thirds of its
+// height where it is wider. `aspect`: width / height.
 View view_of(const Scene &scene, double time, double aspect);
 
-// Frames a sphere from the direction in which a view already looks.
-View frame_sphere(View view, glm::dvec3 center, double radius, double aspect);
+// How far a box reaches along a direction: the greatest product with a point of it.
+double reach_of(const Box &box, const std::array<double, 3> &direction);
+
+// The directions that decide how near that is: outward and towards the viewer, square to the sides of
+// pictures of several widths. How far a solid reaches along each: Scene::framed_reach.
+std::vector<std::array<double, 3>> framing_directions();
 
 // Gone around what it looks at, in radians: about y, and upwards, where straight up and down are the
 // ends; and `distance` times as far from it.

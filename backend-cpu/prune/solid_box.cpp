@@ -1,10 +1,11 @@
-// See solid_box.h. A side of the box is found by branch and bound: what lies beyond a plane is divided
-// until all of it is known to be free, one of its points to be solid, or a cell is too small to
+// See solid_box.h. A side of the extent is found by branch and bound: what lies beyond a plane is
+// divided until all of it is known to be free, one of its points to be solid, or a cell is too small to
 // matter.
 #include "backend-cpu/prune/solid_box.h"
 
 #include "backend-cpu/prune/shorten.h"
 #include "ir/passes/operations.h"
+#include "ir/view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +16,11 @@ namespace {
 using ir::Box;
 
 constexpr std::size_t cells_a_run = 8; // divided at once: 4 children each, with their middles
-constexpr double first_share = 1.0 / 16, last_share = 1.0 / 512; // of the diagonal: how exactly
-constexpr double max_work = 800'000;                             // kernels over a run of boxes
-constexpr int min_runs = 32, max_runs = 3200;                    // a side
+constexpr double first_share = 1.0 / 16, last_share = 1.0 / 512, // of the diagonal: how exactly
+    reach_share = 1.0 / 128;
+constexpr double max_work = 800'000;                    // kernels over a run of boxes
+constexpr int min_runs = 32, max_runs = 3200;           // a side of the box
+constexpr int min_reach_runs = 12, max_reach_runs = 80; // a direction
 constexpr int max_rounds = 24;
 
 double diagonal(const Box &box) {
@@ -50,14 +53,30 @@ void cut(std::vector<Box> &boxes, std::size_t from, std::size_t axis, double at)
     }
 }
 
-// Cut by the plane where that is in it, so that what is flat there is decided by slabs at once; else
-// in the middle along its longest side, and along the next where that is not much shorter.
-void divide(const Box &box, std::size_t axis, double plane, std::vector<Box> &into) {
-    const std::size_t first = into.size();
+// Outward; `axis`: the one that it is along, and 3 for one that is along none.
+struct Direction {
+    std::array<double, 3> way{};
+    std::size_t axis = 3;
+    bool up = true;
+};
+Direction along(std::size_t axis, bool up) {
+    Direction direction{{}, axis, up};
+    direction.way[axis] = up ? 1 : -1;
+    return direction;
+}
+
+// Cut by the plane that is so far out where that is in it and is along two axes, so that what is flat
+// there is decided by slabs at once; else in the middle along its longest side, and along the next
+// where that is not much shorter.
+void divide(const Box &box, const Direction &direction, double plane, std::vector<Box> &into) {
+    const std::size_t first = into.size(), axis = direction.axis;
     into.push_back(box);
-    if (box.lo[axis] < plane && plane < box.hi[axis]) {
-        cut(into, first, axis, plane);
-        return;
+    if (axis < 3) {
+        const double at = direction.up ? plane : -plane;
+        if (box.lo[axis] < at && at < box.hi[axis]) {
+            cut(into, first, axis, at);
+            return;
+        }
     }
     std::array<std::size_t, 3> order{0, 1, 2};
     const auto width = [&](std::size_t i) { return box.hi[i] - box.lo[i]; };
@@ -89,16 +108,17 @@ struct Search {
         }
     }
 
-    // How far along an axis, up or down, the solid in `domain` reaches, no more than `fine` too
-    // far; none: there is no solid. Halves what may be, for it takes the less to see that a part is
-    // free the farther that is from the solid.
-    std::optional<double> side(const Box &domain, std::size_t axis, bool up, double fine) {
+    // How far along a direction the solid in `domain` reaches, no more than about `fine` too far unless
+    // `most` runs do not tell; none: there is no solid. Halves what may be, for it takes the less to see that a part is free
+    // the farther that is from the solid.
+    std::optional<double> side(const Box &domain, const Direction &direction, double fine,
+                               int most) {
         struct Cell {
             Box box;
             double value = 0; // at its middle
             std::size_t number = 0;
         };
-        const auto far_of = [&](const Box &box) { return up ? box.hi[axis] : -box.lo[axis]; };
+        const auto far_of = [&](const Box &box) { return ir::reach_of(box, direction.way); };
         // The nearest to a solid first, then the newest.
         const auto later = [](const Cell &a, const Cell &b) {
             return a.value != b.value ? a.value > b.value : a.number < b.number;
@@ -127,12 +147,12 @@ struct Search {
                     if (ends_before(cells.back()))
                         aside.push_back(cells.back());
                     else
-                        divide(cells.back().box, axis, up ? plane : -plane, children), ++k;
+                        divide(cells.back().box, direction, plane, children), ++k;
                     cells.pop_back();
                 }
                 if (children.empty()) break;
                 if (work < 16 * a_box) work = 0;
-                if (runs++ == most_runs || work <= 0) return up ? far : -far;
+                if (runs++ == most || work <= 0) return far;
                 const std::size_t count = children.size(), padded = (2 * count + 15) / 16 * 16;
                 for (std::size_t k = 0; k < padded; ++k) {
                     const Box &child = children[std::min(k % count, count - 1)];
@@ -145,7 +165,8 @@ struct Search {
                 work -= a_box * static_cast<double>(padded);
                 run_values(parts, shortener, whole.selection(parts), boxes);
                 for (std::size_t k = 0; k < count; ++k) {
-                    const double end = far_of(children[k]), at = middle(children[k])[axis];
+                    const std::array<double, 3> at = middle(children[k]);
+                    const double end = far_of(children[k]);
                     // Nothing solid by its range, or by the step that is safe from its middle.
                     const double value = shortener.result_lo[count + k];
                     if (shortener.result_lo[k] > 0 || value > reach(children[k])) continue;
@@ -153,7 +174,7 @@ struct Search {
                     if (shortener.result_hi[k] <= 0 || longest(children[k]) <= 0.5 * fine)
                         known = std::max(known, end);
                     else if (shortener.result_hi[count + k] <= 0)
-                        known = std::max(known, up ? at : -at);
+                        known = std::max(known, far_of({at, at}));
                     cells.push_back({children[k], value, made++});
                     std::push_heap(cells.begin(), cells.end(), later);
                 }
@@ -162,33 +183,55 @@ struct Search {
             if (known == nowhere) return std::nullopt;
             far = plane;
         }
-        return up ? far : -far;
+        return far;
     }
 };
 
 } // namespace
 
-ir::Box solid_box(const ir::Scene &scene, ir::FunctionId distance, const ir::Box &domain,
-                  double time, double &work) {
+Extent hull(Extent a, const Extent &b) {
+    a.box = ir::hull(a.box, b.box);
+    a.reach.resize(b.reach.size(), -std::numeric_limits<double>::infinity());
+    for (std::size_t k = 0; k < b.reach.size(); ++k) a.reach[k] = std::max(a.reach[k], b.reach[k]);
+    return a;
+}
+
+Extent solid_extent(const ir::Scene &scene, ir::FunctionId distance, const ir::Box &domain,
+                    std::span<const std::array<double, 3>> directions, double time, double &work) {
     const Program program = compile(scene, distance, Choices::Apart);
     const PruneProgram parts = prune_program_of(program, inputs_of(scene, time));
     Search search(parts, ir::operations(scene.graph, scene.graph.function(distance).result), work);
-    Box box = domain;
+    Extent extent{domain, {}};
+    extent.reach.assign(directions.size(), -std::numeric_limits<double>::infinity());
+    Box &box = extent.box;
     // Coarsely until the box stays, then as exactly as is wanted.
     double share = first_share;
     for (int round = 0; round < max_rounds; ++round) {
         const double before = diagonal(box);
         for (std::size_t axis = 0; axis < 3; ++axis)
             for (const bool up : {true, false}) {
-                const std::optional<double> found = search.side(box, axis, up, share * before);
-                if (!found) return {};
-                (up ? box.hi : box.lo)[axis] = *found;
+                const std::optional<double> found =
+                    search.side(box, along(axis, up), share * before, search.most_runs);
+                if (!found) {
+                    box = {};
+                    return extent;
+                }
+                (up ? box.hi : box.lo)[axis] = up ? *found : -*found;
             }
         const bool stays = diagonal(box) > 0.8 * before;
         if (share == last_share && stays) break;
         if (stays) share = last_share;
     }
-    return box;
+    const int reach_runs = std::clamp(search.most_runs / 32, min_reach_runs, max_reach_runs);
+    for (std::size_t k = 0; k < directions.size(); ++k)
+        extent.reach[k] = search.side(box, {directions[k]}, reach_share * diagonal(box), reach_runs)
+                              .value_or(ir::reach_of(box, directions[k]));
+    return extent;
+}
+
+ir::Box solid_box(const ir::Scene &scene, ir::FunctionId distance, const ir::Box &domain,
+                  double time, double &work) {
+    return solid_extent(scene, distance, domain, {}, time, work).box;
 }
 
 } // namespace fathom::cpu

@@ -81,6 +81,7 @@ void Lowering::add_framed(Where frame) {
     scene_.framed_bounded.clear();
     scene_.framed_alone.clear();
     scene_.framed = {};
+    scene_.framed_reach.clear();
     framed_seen_.clear();
     framed_opened_ = 0;
     if (scene_.camera.given) return;

@@ -32,8 +32,10 @@ void loosen(ir::Scene &scene, double times) {
     for (auto &[shape, cells] : scene.cells)
         for (double &bound : cells.lipschitz) bound *= times;
     const ir::Box framed = scene.framed; // which is found after lowering
+    const std::vector<double> reach = scene.framed_reach;
     ir::lower(scene);
     scene.framed = framed;
+    scene.framed_reach = reach;
 }
 
 cpu::Picture drawn(const ir::Scene &scene) {

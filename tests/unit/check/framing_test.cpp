@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <array>
 #include <cmath>
@@ -92,6 +93,47 @@ TEST_CASE("the solid fills what is framed") {
     check_frame("sphere(1)\nsphere(1).translate(x: 9)\nplane(Y, -1)\nslab(2, axis: X)",
                 {-1, -1, -1}, {10, 1, 1});
     check_frame("sphere(1).translate([3 * sin(time), 0, 0])", {-4, -1, -1}, {4, 1, 1}, 0.02);
+}
+
+TEST_CASE("the solid fills nine tenths of the picture's height or width") {
+    // Where points of the surface stand in the picture; 1 is at its edge.
+    const auto fills = [](const driver::Compilation &made, double aspect,
+                          const std::vector<glm::dvec3> &points) {
+        const double width = std::min(aspect, 4.0 / 3);
+        const ir::View view = ir::view_of(made.scene, 0, aspect);
+        double most = 0;
+        for (const glm::dvec3 &point : points) {
+            const glm::dvec3 from = point - view.origin;
+            const double deep = glm::dot(from, view.forward);
+            REQUIRE(deep > 0);
+            most = std::max({most, std::abs(glm::dot(from, view.up)) / (deep * view.extent),
+                             std::abs(glm::dot(from, view.right)) / (deep * view.extent * width)});
+        }
+        return most;
+    };
+    std::vector<glm::dvec3> ball, box, pair;
+    for (int i = 0; i < 4000; ++i) {
+        const double y = 1 - 2 * (i + 0.5) / 4000, r = std::sqrt(1 - y * y), turn = 2.399963 * i;
+        ball.emplace_back(r * std::cos(turn), y, r * std::sin(turn));
+        pair.push_back(ball.back());
+        pair.push_back(0.1 * ball.back() + glm::dvec3(6, 0, -2));
+    }
+    for (int k = 0; k < 8; ++k)
+        box.emplace_back((k & 1) ? 2 : -2, (k & 2) ? 0.25 : -0.25, (k & 4) ? 1 : -1);
+    const std::pair<std::string, std::vector<glm::dvec3>> solids[] = {
+        {"sphere(1)", ball},
+        {"box([4, 0.5, 2])", box},
+        {"sphere(1)\nsphere(0.1).translate([6, 0, -2])", pair},
+        {"implicit(p => length(p) - 1, within: ball(30))", ball}};
+    for (const auto &[text, points] : solids) {
+        const driver::Compilation made = framed(text);
+        for (const double aspect : {0.2, 0.6, 1.0, 4.0 / 3, 16.0 / 9, 2.5, 4.0, 7.0}) {
+            const double most = fills(made, aspect, points);
+            INFO(text << ", aspect " << aspect << ": fills " << most);
+            CHECK(most <= 0.9001);
+            CHECK(most > 0.82);
+        }
+    }
 }
 
 TEST_CASE("a field is framed alike whatever its region is") {
