@@ -322,6 +322,7 @@ static void want(Interpreter &ev, const Value &v, Span place, What what, std::st
         d.help("a shape tells no place: write it as a vector, `[0, 0, 0]`");
     if (wanted == "a vec3") help_with_value(ev, d, v, TypeName::Vec3, place);
     if (v.kind == ValueKind::Shape && wanted == "a color") help_with_shape(d, "color");
+    if (v.kind == ValueKind::Shape && what.text == "`max_steps`") help_with_rendered(ev, d, place);
     if (wanted.starts_with("a region")) help_with_region(ev, d, v, place);
 }
 

@@ -321,7 +321,11 @@ std::vector<Edit> type_away(const Interpreter &ev, Span type) {
 Fix without_call(const Interpreter &ev, const std::string &name, Span place) {
     constexpr std::array<std::string_view, 8> wrappers = {"list", "Some", "Ok",     "dbg",
                                                           "str",  "Box",  "String", "tuple"};
-    if (std::ranges::find(wrappers, name) == wrappers.end() || !place.source) return {};
+    constexpr std::array<std::string_view, 9> pictures = {
+        "show", "display", "draw", "plot", "output", "preview", "view", "visualize", "scene"};
+    const bool picture = std::ranges::find(pictures, name) != pictures.end();
+    if (!place.source || (!picture && std::ranges::find(wrappers, name) == wrappers.end()))
+        return {};
     const std::string_view all = ev.sources[place.source].text;
     if (!all.substr(place.end).starts_with('(')) return {};
     const std::size_t close = closing(all, place.end);
@@ -335,7 +339,26 @@ Fix without_call(const Interpreter &ev, const std::string &name, Span place) {
         edits.push_back({{place.source, at(i), at(i + 1)}, " +"});
     }
     edits.push_back({{place.source, at(close), at(close + 1)}, ""});
-    return {fmt::format("leave `{}( … )` away", name), std::move(edits)};
+    return {fmt::format("{}leave `{}( … )` away",
+                        picture ? "the shapes of a file are the scene: " : "", name),
+            std::move(edits)};
+}
+
+void help_with_rendered(const Interpreter &ev, Diagnostic &d, Span shape) {
+    std::vector<Edit> edits;
+    constexpr std::string_view call = "render(";
+    const std::string_view all =
+        shape.source ? std::string_view(ev.sources[shape.source].text) : std::string_view();
+    if (shape.source && all.substr(0, shape.begin).ends_with(call) &&
+        all.substr(shape.end).starts_with(')'))
+        edits = {
+            {{shape.source, shape.begin - static_cast<std::uint32_t>(call.size()), shape.begin},
+             ""},
+            {{shape.source, shape.end, shape.end + 1}, ""}};
+    d.help(
+        "the shapes of a file are the scene; `render(…)` says how many steps a ray may take, and "
+        "how far",
+        std::move(edits));
 }
 
 Fix without_qualifier(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place) {

@@ -30,6 +30,8 @@ bool lacking(const Interpreter &ev, std::string_view name, const std::string &ne
 // Adds what does to shapes what the name makes one expect, where something does: to an error about
 // a shape that was given to what takes none.
 void help_with_shape(Diagnostic &d, std::string_view name);
+// Of `render(s)`, which some write to have a picture.
+void help_with_rendered(const Interpreter &ev, Diagnostic &d, Span shape);
 // The same of a call whose arguments are known: `min(a, b)` of shapes as a union.
 void help_with_shapes(const Interpreter &ev, Diagnostic &d, const CallSite &site,
                       std::span<const Value> args);
@@ -126,7 +128,7 @@ void help_with_operand(Interpreter &ev, Diagnostic &d, const Value &v, bool unit
 std::optional<Edit> point_of_shape(Interpreter &ev, std::uint32_t frame, Span place);
 // A type with the sign before it, to be left away.
 std::vector<Edit> type_away(const Interpreter &ev, Span type);
-// `list(…)`, `Some(…)`, `str("r = ", r)`: a call that can be left away.
+// `list(…)`, `Some(…)`, `str("r = ", r)`, `show(s)`: a call that can be left away.
 Fix without_call(const Interpreter &ev, const std::string &name, Span place);
 // `THREE.Vector3(1, 2, 3)`, of a module that is none: the library's function alone.
 Fix without_qualifier(Interpreter &ev, std::uint32_t frame, const std::string &name, Span place);
