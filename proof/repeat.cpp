@@ -179,6 +179,25 @@ Prover::Copies Prover::lattice_copies(const Shape &shape, const ir::Repetition &
     return copies;
 }
 
+// Where the copies are many along one axis, as of a long rod, and a few along the others: how to have
+// these alone.
+static std::string cells_across(const ir::Repetition &repetition, const Vec &cells,
+                                const std::array<int, 3> &copies) {
+    constexpr int few = 3;
+    std::string written;
+    bool long_one = false, others = false;
+    for (std::size_t a = 0; a < 3 && !repetition.polar; ++a) {
+        const bool kept = repetition.along[a] && copies[a] <= few;
+        others = others || kept;
+        long_one = long_one || (repetition.along[a] && !kept);
+        if (kept && cells[a].lo != cells[a].hi) return {};
+        written += (a > 0 ? ", " : "") + (kept ? number_text(cells[a].lo) : "0");
+    }
+    if (!long_one || !others) return {};
+    return "; `.repeat([" + written +
+           "])` has copies along those axes alone that it is short along";
+}
+
 Derived Prover::know_repeat(ShapeId id) {
     const Shape shape = scene.shapes[id];
     const ir::Repetition repetition = scene.shapes.repetitions[shape.payload];
@@ -203,7 +222,8 @@ Derived Prover::know_repeat(ShapeId id) {
                 id, Code::RepeatLimit,
                 "the repeated shape reaches over too many cells: " + number_text(copies.product) +
                     " copies would have to be evaluated at every point"))
-            d->help("make the cell larger or the shape smaller");
+            d->help("make the cell larger or the shape smaller" +
+                    cells_across(repetition, vector(shape.args[0]), plan.neighbors));
         k.failed = true;
         for (int &n : plan.neighbors) n = std::min(n, 3);
     }
