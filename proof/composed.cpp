@@ -88,9 +88,11 @@ class Parts {
         is_moved_ = first && is_moved;
         const auto look = [&] {
             std::optional<FieldBound> found = through_vector(field);
-            if (found || !first) return found;
+            if (!first || (found && !(is_steep_ && is_sum_apart(field)))) return found;
             look_below(field);
-            if (!held_.empty()) found = search(field);
+            if (held_.empty()) return found;
+            const FieldBound by_parts = search(field);
+            if (!found || by_parts.lipschitz < found->lipschitz) found = by_parts;
             return found;
         };
         std::optional<FieldBound> out = look();
@@ -133,6 +135,22 @@ class Parts {
         return seen.size() <= max_nodes_composed;
     }
 
+    // What moves, and is a number times a sum of two that read other coordinates: one vector is as
+    // steep for both as for the one for which it is steepest.
+    bool is_sum_apart(NodeId field) {
+        const ir::Graph::Reads reads = graph_.reads(field);
+        if (!reads.time && !reads.params) return false;
+        while (graph_[field].op == Op::Neg || graph_[field].op == Op::Mul) {
+            const NodeId last = graph_.args(field).back();
+            const bool by_first = graph_[field].op == Op::Mul && !graph_.reads(last).point;
+            field = by_first ? graph_.arg(field, 0) : last;
+        }
+        if (graph_[field].op != Op::Add && graph_[field].op != Op::Sub) return false;
+        const unsigned a = read_.below(graph_.arg(field, 0)).coordinates,
+                       b = read_.below(graph_.arg(field, 1)).coordinates;
+        return a != 0 && b != 0 && (a & b) == 0;
+    }
+
     // The bound of an expression that reads the point through one vector.
     std::optional<FieldBound> through_vector(NodeId id) {
         if (read_.below(id).is_affine) return {};
@@ -140,7 +158,10 @@ class Parts {
         std::optional<FieldBound> best;
         const auto try_one = [&](const Inner &inner, double slope) {
             const auto found = through(id, inner, slope);
-            if (found && (!best || found->lipschitz < best->lipschitz)) best = found;
+            if (found && (!best || found->lipschitz < best->lipschitz)) {
+                best = found;
+                is_steep_ = slope > 1 + not_as_steep;
+            }
             return best && best->lipschitz <= tight * best->sampled;
         };
         for (const Inner &inner : inners.warped())
@@ -328,6 +349,17 @@ class Parts {
         }
     }
 
+    // The point with 0 for each coordinate that the expression does not read: its gradient has no
+    // part along these.
+    NodeId coordinates_of(NodeId id) {
+        const unsigned read = read_.below(id).coordinates;
+        std::vector<NodeId> parts;
+        for (int axis = 0; axis < 3; ++axis)
+            parts.push_back(read >> axis & 1 ? graph_.component(graph_.point(), axis)
+                                             : graph_.number(0));
+        return graph_.make(Op::Make, ir::Type::Vec3, parts);
+    }
+
     // With the parts as fields of which their bounds alone are known.
     FieldBound search(NodeId field) {
         Ranges ranges = ranges_;
@@ -343,7 +375,7 @@ class Parts {
             ranges.caches[cache.index] = {true, {bound.value}, bound.lipschitz};
             context_.cached.resize(cache.index + 1);
             context_.cached[cache.index] = true;
-            map[id] = graph_.make(Op::Cached, ir::Type::Float, {point},
+            map[id] = graph_.make(Op::Cached, ir::Type::Float, {coordinates_of(id)},
                                   static_cast<std::uint32_t>(cache.index));
         }
         Budget budget = budget_;
@@ -358,6 +390,7 @@ class Parts {
     Budget budget_;
     ReadThrough read_;
     bool is_moved_ = false; // by noise: such vectors alone are looked for
+    bool is_steep_ = false; // the vector that a bound was found by
     std::vector<std::pair<NodeId, FieldBound>> held_;
 };
 

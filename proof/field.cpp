@@ -166,10 +166,10 @@ bool products_overflow(const Tape &tape, const Ranges &ranges, const Domain &dom
 }
 
 // Those along which a field is as steep all along are of no use.
-std::array<bool, 3> axes_to_cut(const Periods &periods, const Cell &whole, const Tape &tape) {
+std::array<bool, 3> axes_to_cut(const Periods &periods, const Tape &tape) {
     std::array<bool, 3> cuts = periods.reads;
     for (std::size_t i = 0; i < 3; ++i)
-        if (periods.linear[i] && !whole.p[i].finite() && !tape.near) cuts[i] = false;
+        if (periods.linear[i] && !tape.near) cuts[i] = false;
     return cuts;
 }
 
@@ -188,7 +188,7 @@ FieldBound search_cells(Flattening &context, const Ranges &ranges, const Tape &t
     Cell whole = domain.box;
     const std::array<bool, 3> shifted = to_one_period(periods, whole);
     const bool reduced = shifted[0] || shifted[1] || shifted[2];
-    const std::array<bool, 3> cuts = axes_to_cut(periods, whole, tape);
+    const std::array<bool, 3> cuts = axes_to_cut(periods, tape);
     const std::optional<Zone> along =
         reduced && domain.zone ? zone_along(*domain.zone, shifted) : std::nullopt;
     const Zone *zone = !reduced ? domain.zone : along ? &*along : nullptr;

@@ -240,3 +240,52 @@ TEST_CASE("what reads a distance and what it is of is no field of the distance")
         CHECK_FALSE(bound(std::string("implicit(p => {\n  let q = p - vec3(sin(time), 0, 0)\n  ") +
                           jumps + " - 0.5 }, within: ball(2))\n"));
 }
+
+namespace {
+
+// A height over a place q in the plane, and its steepest slope by q.
+struct Height {
+    const char *text;
+    double slope;
+};
+constexpr Height heights[] = {
+    {"pow(1 - (1 - abs(sin(q.x))) * (abs(sin(q.x)) + abs(cos(q.x))), 4)", 3.3},
+    {"abs(sin(q.x)) * cos(q.y)", 1},
+    {"exp(-abs(sin(q.x)) - abs(sin(q.y)))", 1.4143},
+    {"max(sin(q.x) * sin(q.y), 0.3 * cos(q.x + q.y))", 1},
+};
+// … and which place that is, with what makes it steeper.
+struct Ground {
+    const char *text;
+    double steep;
+};
+constexpr Ground grounds[] = {
+    {"2 * p.xz + 0.5 * time", 2},
+    {"3 * rotate2(p.zx, 0.4) - vec2(time, 0.3 * slider)", 3},
+    {"rotate2(2 * p.xz, time) + slider", 2},
+};
+
+} // namespace
+
+TEST_CASE("a sum of two that read other coordinates is as steep as both at right angles") {
+    for (const Height &height : heights)
+        for (const Ground &ground : grounds)
+            for (const char *field :
+                 {"p.y - 0.3 * h", "-0.8 * (p.y + 0.3 * h)",
+                  // what reads the same coordinates is no such sum
+                  "p.y - 0.3 * h - 0.4 * p.x", "p.y - 0.3 * h * (1 + 0.2 * p.y)"}) {
+                const std::string text =
+                    "param slider = 0.2 in -1..1\nimplicit(p => {\n  let q = " +
+                    std::string(ground.text) + "\n  let h = " + height.text + "\n  " + field +
+                    " }, ";
+                INFO(text);
+                const auto proved = bound(text + "within: ball(2))\n");
+                REQUIRE(proved);
+                const std::string said = field;
+                const double both = std::hypot(1, 0.3 * height.slope * ground.steep);
+                if (said == "p.y - 0.3 * h") CHECK(*proved <= 1.15 * both);
+                if (said.starts_with("-0.8")) CHECK(*proved <= 1.15 * 0.8 * both);
+                for (const double time : {0.0, 0.7, 4.0})
+                    CHECK(steepest(text + "estimate: 1)\n", time) <= *proved * (1 + 1e-4));
+            }
+}
