@@ -33,18 +33,6 @@ double Majorants::share_of(Part part, Part rest) const {
     return most == infinity ? 1 : std::min(1.0, ratio_of(most, ir::rounding::down(most + beside)));
 }
 
-// No arm of a choice is looked at.
-struct OutsideArms {
-    Majorants &majorants;
-    std::vector<std::pair<Part, Interval>> narrowed;
-    explicit OutsideArms(Majorants &of) : majorants(of), narrowed(std::move(of.narrowed)) {
-        of.narrowed.clear();
-    }
-    ~OutsideArms() { majorants.narrowed = std::move(narrowed); }
-    OutsideArms(const OutsideArms &) = delete;
-    OutsideArms &operator=(const OutsideArms &) = delete;
-};
-
 double Majorants::at_once(Wanted wanted, const Vector &v, Part d, double more) {
     const double least = d == one ? 1 : value(d).mignitude();
     if (wanted == Wanted::Size) return ratio_of(size(v), least);
@@ -350,7 +338,7 @@ void Machine::hold_majorant(const Instruction &instruction) {
     using Wanted = Majorants::Wanted;
     const double slope = majorants.bound(Wanted::Slope, v, d);
     if (slope < norm_[out]) {
-        const double found = up(slope + majorants.bound(Wanted::Turning, v, d), 8);
+        const double found = up(majorants.whole(v, d), 8);
         most = std::max(most, found);
         hold_norm(out, found);
     }

@@ -1,6 +1,6 @@
 // The bound of one quotient in one cell, as it is being found: a vector that is folded and inverted
 // over and over, over the scale that is carried along. Its Jacobian is as large as the scale, and
-// hangs on it as the scale hangs on itself. For majorant_parts.cpp and machine_majorants.cpp alone.
+// hangs on it as the scale hangs on itself. For majorant_*.cpp and machine_majorants.cpp alone.
 // Proofs: docs/lipschitz.md, 2.45.
 #pragma once
 
@@ -71,8 +71,8 @@ struct Majorants {
         bool bounded = true;
     };
     // What bounds are asked for: over |d|, of the size of a vector and of its Jacobian; over d^2, of
-    // its size and `more` times the gradient of d.
-    enum class Wanted { Size, Slope, Turning };
+    // its size and `more` times the gradient of d; and of the Jacobian of the quotient, as one.
+    enum class Wanted { Size, Slope, Turning, Whole };
 
     Machine &machine;
     const Tape &tape;
@@ -157,6 +157,14 @@ struct Majorants {
     std::vector<Vector> chain(Vector v, bool meets) const;
     std::optional<Fold> fold_to(const Vector &v, const Vector &y, int depth = 0) const;
 
+    // -- quotients as one
+    double whole(const Vector &raw, Part d);
+    double whole_in_parts(const Vector &v, Part d);
+    double whole_of_fold(const Vector &v, const Vector &y, Part d);
+    double whole_of_product(const Vector &v, const Instruction &made, Part d);
+    double whole_of_sum(const Vector &v, Part d);
+    Interval slopes_here(Part p, Part of, int depth = 0) const;
+
     // -- bounds
     double bound(Wanted wanted, const Vector &raw, Part d, double more = 0);
     double at_once(Wanted wanted, const Vector &v, Part d, double more);
@@ -200,6 +208,18 @@ struct Majorants {
     }
     std::optional<std::pair<Part, Part>> sum_of(Part d) const;
     double share_of(Part part, Part rest) const;
+};
+
+// No arm of a choice is looked at.
+struct OutsideArms {
+    Majorants &majorants;
+    std::vector<std::pair<Majorants::Part, Interval>> narrowed;
+    explicit OutsideArms(Majorants &of) : majorants(of), narrowed(std::move(of.narrowed)) {
+        of.narrowed.clear();
+    }
+    ~OutsideArms() { majorants.narrowed = std::move(narrowed); }
+    OutsideArms(const OutsideArms &) = delete;
+    OutsideArms &operator=(const OutsideArms &) = delete;
 };
 
 } // namespace fathom::proof

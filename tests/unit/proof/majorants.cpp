@@ -108,8 +108,11 @@ struct Escape {
             if (pick(5) != 0) move();
         }
         const NodeId below = pick(3) == 0 ? s.call(Op::Abs, d) : d;
-        switch (pick(5)) {
+        switch (pick(8)) {
         case 0: return g.div(g.component(z, 1), below);
+        case 5: return g.div(g.mul(n(0.25), s.call(Op::Abs, g.component(z, 2))), below);
+        case 6: return g.div(g.make(Op::Max, {g.component(z, 0), g.component(z, 1)}), below);
+        case 7: return s.length(g.div(s.call(Op::Abs, g.sub(z, some_vector())), below));
         case 1: return g.div(g.sub(s.length(z), n(1)), below);
         case 2: return s.length(g.div(z, below));
         case 3: return g.div(dot(z, some_vector()), below);
