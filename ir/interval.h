@@ -49,6 +49,7 @@ inline double times(double a, double b) {
 constexpr double library = 8;
 // Evaluators count in single precision: beyond the one is infinity, below the other 0.
 constexpr double max_single = 1e38, min_single = 1.2e-38;
+constexpr double max_squared = 1e18; // of a vector: what its length's square holds
 } // namespace rounding
 
 inline double Interval::middle() const {

@@ -154,15 +154,14 @@ Cell within_reach(Cell cell) {
     return cell;
 }
 
-// May products leave single precision where rays go, of a field without powers and exponentials? In
-// regions they are taken as they are.
+// May products leave single precision where rays go, of a field without powers and exponentials?
 bool products_overflow(const Tape &tape, const Ranges &ranges, const Domain &domain) {
-    if (tape.grows || tape.too_large) return false;
-    const Cell near = within_reach(domain.box);
-    if (near.p == domain.box.p) return false;
+    if (tape.grows || tape.too_large || tape.winds_about) return false; // that is seen as it is
     Machine machine(tape, ranges);
+    const Cell near = within_reach(domain.box);
     machine.run(near);
-    return machine.leaves_single();
+    // In a region what is infinite is the time, or beside a pole, and is told of as such.
+    return machine.leaves_single(near.p != domain.box.p);
 }
 
 // Those along which a field is as steep all along are of no use.
@@ -297,6 +296,11 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, const Tape &t
                         const Domain &domain, const Budget &budget) {
     if (!products_overflow(tape, ranges, domain))
         return search_cells(context, ranges, tape, domain, budget);
+    if (within_reach(domain.box).p ==
+        domain.box.p) { // of a region: what else is wrong is told first
+        const FieldBound as_it_is = search_cells(context, ranges, tape, domain, budget);
+        if (!std::isfinite(as_it_is.lipschitz)) return as_it_is;
+    }
     Tape growing = tape;
     growing.grows = true;
     return search_cells(context, ranges, growing, domain, budget);

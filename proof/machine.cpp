@@ -194,9 +194,20 @@ void Machine::conclude() {
         }
 }
 
-bool Machine::leaves_single() const {
-    return std::ranges::any_of(
-        value_, [](const Interval &v) { return v.magnitude() > ir::rounding::max_single; });
+bool Machine::leaves_single(bool by_infinity) const {
+    const auto is_above = [&](double most) {
+        return [most, by_infinity](const Interval &v) {
+            return v.magnitude() > most && (by_infinity || v.finite());
+        };
+    };
+    return std::ranges::any_of(value_, is_above(ir::rounding::max_single)) ||
+           std::ranges::any_of(tape_.each, [&](const Instruction &in) {
+               return squares_arguments(in) && std::ranges::any_of(in.args, [&](Slot s) {
+                          const auto from = value_.begin() + std::ptrdiff_t(tape_.first[s]);
+                          return std::any_of(from, from + tape_.size[s],
+                                             is_above(ir::rounding::max_squared));
+                      });
+           });
 }
 
 void Machine::know_nothing() {

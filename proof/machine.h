@@ -145,7 +145,7 @@ class Machine {
         return grad_[tape_.first[s] + static_cast<std::uint32_t>(i)];
     }
     // Is a value of the last run beyond what single precision holds?
-    bool leaves_single() const;
+    bool leaves_single(bool by_infinity) const;
     Trouble trouble() const { return trouble_[tape_.result]; }
     NodeId cause() const { return cause_[tape_.result]; } // the first node that is in trouble
     std::size_t work() const { return work_; }            // instructions run so far

@@ -61,13 +61,15 @@ void Machine::step(const Instruction &instruction) {
     if (!bend_.empty()) bend_[instruction.out] = step.bend();
 }
 
-// An argument that single precision may not hold is infinity there. What keeps the greater part of
+// An argument that single precision may not hold, or of a length whose square it may not, is infinity
+// there. What keeps the greater part of
 // it, or says the same of all that is so large, may have it; of anything else the value is another
 // (log), or none (infinity/infinity).
 bool Step::overflows() const {
+    const double most = squares_arguments(in) ? ir::rounding::max_squared : max_single;
     const auto large = [&](int arg) {
         for (int c = 0; c < size(arg); ++c)
-            if (value(arg, c).magnitude() > max_single) return true;
+            if (value(arg, c).magnitude() > most) return true;
         return false;
     };
     int many = 0;

@@ -151,6 +151,12 @@ struct Instruction {
     NodeId node;
 };
 
+// Evaluators add up the squares of its arguments.
+inline bool squares_arguments(const Instruction &in) {
+    return in.form == Form::Norm || in.form == Form::Corner || in.op == Op::Length ||
+           in.op == Op::Normalize;
+}
+
 struct Loop {
     std::vector<Instruction> body;
     std::vector<Slot> vars, start, next, scratch, ends; // `ends`: the values that the loop hands on
