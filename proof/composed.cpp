@@ -146,8 +146,8 @@ class Parts {
             field = by_first ? graph_.arg(field, 0) : last;
         }
         if (graph_[field].op != Op::Add && graph_[field].op != Op::Sub) return false;
-        const unsigned a = read_.below(graph_.arg(field, 0)).coordinates,
-                       b = read_.below(graph_.arg(field, 1)).coordinates;
+        const unsigned a = read_.beside({graph_.arg(field, 0)}, {}),
+                       b = read_.beside({graph_.arg(field, 1)}, {});
         return a != 0 && b != 0 && (a & b) == 0;
     }
 
@@ -352,7 +352,7 @@ class Parts {
     // The point with 0 for each coordinate that the expression does not read: its gradient has no
     // part along these.
     NodeId coordinates_of(NodeId id) {
-        const unsigned read = read_.below(id).coordinates;
+        const unsigned read = read_.beside({id}, {}); // in loops, too
         std::vector<NodeId> parts;
         for (int axis = 0; axis < 3; ++axis)
             parts.push_back(read >> axis & 1 ? graph_.component(graph_.point(), axis)

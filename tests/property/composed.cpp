@@ -289,3 +289,16 @@ TEST_CASE("a sum of two that read other coordinates is as steep as both at right
                     CHECK(steepest(text + "estimate: 1)\n", time) <= *proved * (1 + 1e-4));
             }
 }
+
+TEST_CASE("a part reads the coordinates that its loops read") {
+    const std::string text = "param k = 0.5 in 0.3..0.7\nfn rope(p: vec3) -> float {\n"
+                             "  var d = 10.0\n  for i in 0..3 {\n"
+                             "    let a = 3 * p.y + 2 * pi / 3 * i\n"
+                             "    let q = vec2(cos(a) * p.x + sin(a) * p.z, "
+                             "cos(a) * p.z - sin(a) * p.x)\n"
+                             "    d = min(d, length(q - vec2(0.3, 0)) - 0.15)\n  }\n  d\n}\n"
+                             "implicit(p => max(rope(p - vec3(k, 0, 0.35)), p.y - k), ";
+    const auto proved = bound(text + "within: ball(2))\n");
+    REQUIRE(proved);
+    CHECK(steepest(text + "estimate: 1)\n", 0) <= *proved * (1 + 1e-4));
+}
