@@ -85,6 +85,32 @@ void fill(Inquiry &inquiry) {
     inquiry.by_root.sort();
 }
 
+// Both distances, into the certificate.
+void certify_distances(const Field &field, const Settings &settings, const Made &made,
+                       const Earlier *earlier, bool all_or_nothing, Progress &progress,
+                       Certificate &certificate) {
+    const unsigned threads = threads_of(settings);
+    const Lattice &lattice = made.octree.lattice;
+    const double side = lattice.side(lattice.level);
+    const Point origin = point_of(lattice, {0, 0, 0});
+    Inquiry inquiry{.made = made,
+                    .field = field,
+                    .trusts = true,
+                    .allowed = side + made.simplified,
+                    .own = made.simplified == 0 && made.widened == 0,
+                    .earlier = earlier,
+                    .all_or_nothing = all_or_nothing,
+                    // Boxes of twice what is allowed are looked up: in no more than five a side.
+                    .by_root = Grid(origin, std::max(side, 0.5 * (side + made.simplified)))};
+    fill(inquiry);
+    const double from = progress.from, to = progress.to;
+    progress.to = 0.5 * (from + to);
+    certify_surface(inquiry, threads, progress, certificate);
+    if (progress.cancelled || inquiry.in_vain()) return;
+    progress.phase(to);
+    certify_mesh(inquiry, threads, progress, certificate);
+}
+
 } // namespace
 
 std::uint64_t volume_in_doubt(const Certificate &certificate, const Lattice &lattice) {
@@ -105,29 +131,18 @@ Form form_of(const Mesh &mesh) {
     return form;
 }
 
+bool is_near(const Field &field, const Settings &settings, const Made &made, Progress &progress) {
+    Certificate certificate;
+    certify_distances(field, settings, made, nullptr, true, progress, certificate);
+    return !progress.cancelled && certificate.near();
+}
+
 Certificate certify(const Field &field, const Settings &settings, const Made &made,
                     const Earlier *earlier, Progress &progress) {
-    const unsigned threads = threads_of(settings);
     Certificate certificate = earlier ? kept_of(*earlier, made.octree) : Certificate{};
-    const Lattice &lattice = made.octree.lattice;
-    const double side = lattice.side(lattice.level);
-    const Point origin = point_of(lattice, {0, 0, 0});
-    Inquiry inquiry{.made = made,
-                    .field = field,
-                    .trusts = true,
-                    .allowed = side + made.simplified,
-                    .own = made.simplified == 0 && made.widened == 0,
-                    .earlier = earlier,
-                    // Boxes of twice what is allowed are looked up: in no more than five a side.
-                    .by_root = Grid(origin, std::max(side, 0.5 * (side + made.simplified)))};
     certificate.used_bound = field.proved;
-    fill(inquiry);
-    const double from = progress.from, to = progress.to;
-    progress.to = 0.5 * (from + to);
-    certify_surface(inquiry, threads, progress, certificate);
+    certify_distances(field, settings, made, earlier, false, progress, certificate);
     if (progress.cancelled) return certificate;
-    progress.phase(to);
-    certify_mesh(inquiry, threads, progress, certificate);
     const Form form = form_of(made.mesh);
     certificate.components = form.components;
     certificate.genus = form.genus;

@@ -150,46 +150,65 @@ std::array<Real3, ways> ways_from(const Triangle3 &piece) {
 
 // Pieces far from all edges that the surface crosses: it lies between the middle of such a piece and
 // a point with another sign.
-void certify_left(const Inquiry &inquiry, const std::vector<Shard> &left,
+void certify_some(const Inquiry &inquiry, std::span<const Shard> left, Evaluator &evaluator,
                   Certificate &certificate) {
-    constexpr std::size_t group = 256;
-    Evaluator evaluator(inquiry.field);
+    constexpr std::size_t looks = 1 + ways * steps.size();
+    Points points;
+    Point lo{}, hi{};
+    const auto add = [&](const Real3 &at) {
+        const Point p{static_cast<float>(at[0]), static_cast<float>(at[1]),
+                      static_cast<float>(at[2])};
+        for (std::size_t i = 0; i < 3; ++i) {
+            lo[i] = points.size() > 0 ? std::min(lo[i], p[i]) : p[i];
+            hi[i] = points.size() > 0 ? std::max(hi[i], p[i]) : p[i];
+        }
+        points.add(p);
+    };
+    for (const Shard &shard : left) {
+        const Real3 middle = along({}, sum_of(shard.corners), 1.0 / 3);
+        add(middle);
+        for (const double step : steps)
+            for (const Real3 &way : ways_from(shard.corners))
+                add(along(middle, way, step * inquiry.allowed));
+    }
+    cpu::Boxes boxes;
     std::vector<float> values;
-    for (std::size_t begin = 0; begin < left.size(); begin += group) {
-        const std::size_t count = std::min(group, left.size() - begin);
-        Points points;
-        const auto add = [&](const Real3 &at) {
-            points.add(
-                {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])});
-        };
-        for (std::size_t k = 0; k < count; ++k) {
-            const Triangle3 &piece = left[begin + k].corners;
-            const Real3 middle = along({}, sum_of(piece), 1.0 / 3);
-            add(middle);
-            for (const double step : steps)
-                for (const Real3 &way : ways_from(piece))
-                    add(along(middle, way, step * inquiry.allowed));
-        }
-        values_at(evaluator, *inquiry.field.whole, points, values);
-        for (std::size_t k = 0; k < count; ++k) {
-            const Triangle3 &piece = left[begin + k].corners;
-            const double size =
-                std::max({distance(piece[0], piece[1]), distance(piece[1], piece[2]),
-                          distance(piece[2], piece[0])}) +
-                4 * inquiry.made.octree.lattice.ulp; // points are rounded to floats
-            const std::span<const float> here =
-                std::span(values).subspan(k * (1 + ways * steps.size()), 1 + ways * steps.size());
-            double far = 2 * inquiry.allowed;
-            for (std::size_t s = steps.size(); s-- > 0;)
-                for (std::size_t w = 0; w < ways; ++w)
-                    if ((here[1 + s * ways + w] <= 0) != (here[0] <= 0))
-                        far = (steps[s] * inquiry.allowed + size) * outward;
-            if (far <= inquiry.allowed)
-                certificate.mesh_to_surface = std::max(certificate.mesh_to_surface, far);
-            else
-                certificate.unproved.push_back({points[k * (1 + ways * steps.size())],
-                                                middle_of(inquiry, left[begin + k].triangle)});
-        }
+    values_at(evaluator, *tape_in(evaluator, boxes, inquiry.field.whole, lo, hi), points, values);
+    for (std::size_t k = 0; k < left.size(); ++k) {
+        const Triangle3 &piece = left[k].corners;
+        const double size = std::max({distance(piece[0], piece[1]), distance(piece[1], piece[2]),
+                                      distance(piece[2], piece[0])}) +
+                            4 * inquiry.made.octree.lattice.ulp; // points are rounded to floats
+        const std::span<const float> here = std::span(values).subspan(k * looks, looks);
+        double far = 2 * inquiry.allowed;
+        for (std::size_t s = steps.size(); s-- > 0;)
+            for (std::size_t w = 0; w < ways; ++w)
+                if ((here[1 + s * ways + w] <= 0) != (here[0] <= 0))
+                    far = (steps[s] * inquiry.allowed + size) * outward;
+        if (far <= inquiry.allowed)
+            certificate.mesh_to_surface = std::max(certificate.mesh_to_surface, far);
+        else
+            certificate.unproved.push_back(
+                {points[k * looks], middle_of(inquiry, left[k].triangle)});
+    }
+}
+
+void certify_left(const Inquiry &inquiry, const std::vector<Shard> &left, unsigned threads,
+                  Progress &progress, Certificate &certificate) {
+    constexpr std::size_t group = 64;
+    std::vector<Certificate> found((left.size() + group - 1) / group);
+    in_parallel(
+        found.size(), threads, progress, [&] { return Evaluator(inquiry.field); },
+        [&](Evaluator &evaluator, std::size_t number) {
+            const std::size_t first = number * group;
+            certify_some(inquiry,
+                         std::span(left).subspan(first, std::min(group, left.size() - first)),
+                         evaluator, found[number]);
+        });
+    for (const Certificate &some : found) {
+        certificate.mesh_to_surface = std::max(certificate.mesh_to_surface, some.mesh_to_surface);
+        certificate.unproved.insert(certificate.unproved.end(), some.unproved.begin(),
+                                    some.unproved.end());
     }
 }
 
@@ -221,7 +240,7 @@ void certify_mesh(const Inquiry &inquiry, unsigned threads, Progress &progress,
         certificate.mesh_to_surface = std::max(certificate.mesh_to_surface, some.farthest);
         left.insert(left.end(), some.left.begin(), some.left.end());
     }
-    if (!left.empty()) certify_left(inquiry, left, certificate);
+    certify_left(inquiry, left, threads, progress, certificate);
 }
 
 } // namespace fathom::mesh

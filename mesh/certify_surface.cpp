@@ -88,17 +88,6 @@ double first_near(const Inquiry &inquiry, const std::vector<std::uint32_t> &tria
     return d;
 }
 
-// A tape for a box alone, where that is shorter.
-TapePtr tape_in(Evaluator &evaluator, cpu::Boxes &boxes, const TapePtr &tape, const Box &box) {
-    if (is_short(*tape)) return tape;
-    boxes.count = 16;
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k < boxes.count; ++k)
-            boxes.lo[i][k] = box.lo[i], boxes.hi[i][k] = box.hi[i];
-    ranges_over(evaluator, *tape, boxes);
-    return shortened_in_first(evaluator, tape);
-}
-
 // What is found of the surface in a leaf.
 struct Reach {
     bool decided = true;
@@ -238,7 +227,7 @@ Reach reach_in(const Inquiry &inquiry, Evaluator &evaluator, cpu::Boxes &boxes,
         leave_out_near(inquiry, candidates, open, reach.farthest);
         reach.empty = reach.empty && open.size() == all;
         if (open.empty()) break;
-        if (depth == 0) look.tape = tape_in(evaluator, boxes, look.tape, whole);
+        if (depth == 0) look.tape = tape_in(evaluator, boxes, look.tape, whole.lo, whole.hi);
         const bool last = depth == deepest || searched;
         if (depth % seam_depth == 0)
             look.leave_out_seams(open, last, depth == 0 && !last, depth == 0 && node.crossed());
@@ -331,9 +320,9 @@ std::vector<Reach> reach_by_halves(const Inquiry &inquiry, Certifier &memory,
     if (left.boxes.empty()) return reach;
     const Octree &octree = inquiry.made.octree;
     const Node &node = octree.nodes[static_cast<std::size_t>(leaves[0].node)];
-    const TapePtr tape =
-        tape_in(memory.evaluator, memory.boxes, octree.tapes[static_cast<std::size_t>(node.task)],
-                around(left.boxes));
+    const Box all = around(left.boxes);
+    const TapePtr tape = tape_in(memory.evaluator, memory.boxes,
+                                 octree.tapes[static_cast<std::size_t>(node.task)], all.lo, all.hi);
     constexpr std::size_t at_once = cpu::max_boxes / 2;
     std::vector<bool> open(left.boxes.size());
     for (std::size_t begin = 0; begin < left.boxes.size(); begin += at_once) {
@@ -409,6 +398,7 @@ void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progres
             Found &here = found[number];
             std::vector<Reach> early;
             for (std::size_t k = number * piece_of_work, next = k; k < end; ++k) {
+                if (inquiry.in_vain()) return;
                 if (k == next) {
                     const auto rest = std::span(leaves).subspan(k, end - k);
                     const std::size_t count = group_of(inquiry.made.octree, rest);
@@ -423,6 +413,7 @@ void certify_surface(const Inquiry &inquiry, unsigned threads, Progress &progres
                 }
                 here.divisions = divisions_a_leaf * piece_of_work - budget.divisions;
                 if (!reach.decided) {
+                    inquiry.doubted = true;
                     here.undecided.push_back(leaves[k]);
                     here.doubts.push_back(reach.doubt);
                     continue;

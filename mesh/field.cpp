@@ -168,4 +168,15 @@ TapePtr shortened_in_first(Evaluator &evaluator, const TapePtr &tape) {
     return shortened(evaluator, tape, 1)[0];
 }
 
+TapePtr tape_in(Evaluator &evaluator, cpu::Boxes &boxes, const TapePtr &tape, const Point &lo,
+                const Point &hi) {
+    if (is_short(*tape)) return tape;
+    boxes.count = 16;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < boxes.count; ++k)
+            boxes.lo[i][k] = lo[i], boxes.hi[i][k] = hi[i];
+    ranges_over(evaluator, *tape, boxes);
+    return shortened_in_first(evaluator, tape);
+}
+
 } // namespace fathom::mesh

@@ -90,5 +90,8 @@ bool is_short(const cpu::ShortTape &tape);
 std::array<TapePtr, cpu::max_boxes> shortened(Evaluator &evaluator, const TapePtr &tape,
                                               std::uint64_t which);
 TapePtr shortened_in_first(Evaluator &evaluator, const TapePtr &tape); // of the boxes
+// A tape that holds in a box, shorter than the one that it was made of where that pays.
+TapePtr tape_in(Evaluator &evaluator, cpu::Boxes &boxes, const TapePtr &tape, const Point &lo,
+                const Point &hi);
 
 } // namespace fathom::mesh

@@ -5,6 +5,7 @@
 #include "mesh/grid.h"
 #include "mesh/nearest.h"
 
+#include <atomic>
 #include <optional>
 
 namespace fathom::mesh {
@@ -19,6 +20,7 @@ struct Inquiry {
     double allowed;         // the side of a drawing cell, and what the mesh was simplified by
     bool own;               // the mesh is as its loops made it
     const Earlier *earlier; // or null
+    bool all_or_nothing;    // what is found after the first doubt does not matter
     std::vector<Triangle3> triangles{};
     std::optional<TriangleTree> tree{};
     Grid by_root;
@@ -26,6 +28,9 @@ struct Inquiry {
     std::vector<std::uint32_t> first_at{}, at_vertex{};
     std::vector<std::pair<std::int32_t, std::uint32_t>> patches{}; // by node, sorted
 
+    mutable std::atomic<bool> doubted{false};
+
+    bool in_vain() const { return all_or_nothing && doubted; }
     bool proved_before(const Real3 &at) const { return earlier && !earlier->changed.beside(at); }
 };
 

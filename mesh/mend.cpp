@@ -371,7 +371,7 @@ void settle_shape(const ir::Scene &scene, const Field &field, const Settings &se
         mended.made.octree.nodes.size() > large)
         return;
     std::optional<Wider> wide = draw_wider(scene, field, settings, mended.made,
-                                           ThinWalls{thin.thickness, thin.gap}, progress);
+                                           ThinWalls{thin.thickness, thin.gap}, true, progress);
     if (!wide || !wide->certificate.near()) return;
     mended.made = std::move(wide->made), certificate = std::move(wide->certificate);
 }
@@ -392,8 +392,8 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
     progress.from = mesh_share;
     progress.to = first_share;
     const Field field(scene, settings.time, settings.bounds);
-    std::optional<Wider> wide =
-        draw_wider(scene, field, settings, mended.made, mended.made.octree.undecided, progress);
+    std::optional<Wider> wide = draw_wider(scene, field, settings, mended.made,
+                                           mended.made.octree.undecided, true, progress);
     const auto take_wide = [&] {
         mended.made = std::move(wide->made), mended.certificate = std::move(wide->certificate);
     };
@@ -405,8 +405,8 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
     }
     mended.certificate = certify(field, settings, mended.made, nullptr, progress);
     if (!wide && !progress.cancelled) { // what corners show may be crumbs
-        wide =
-            draw_wider(scene, field, settings, mended.made, mended.certificate.undecided, progress);
+        wide = draw_wider(scene, field, settings, mended.made, mended.certificate.undecided, true,
+                          progress);
         if (wide && wide->certificate.certified()) {
             take_wide();
             return mended;

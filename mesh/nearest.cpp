@@ -1,5 +1,7 @@
 #include "mesh/nearest.h"
 
+#include "mesh/curve.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -46,44 +48,18 @@ Real3 nearest_shares(const Real3 &p, const Real3 &a, const Real3 &b, const Real3
     return sum > 0 ? Real3{va / sum, vb / sum, vc / sum} : Real3{1, 0, 0};
 }
 
-// The bits of a number, two zeros after each.
-std::uint64_t spread(std::uint64_t x) {
-    x = (x | x << 32) & 0x1f00000000ffff;
-    x = (x | x << 16) & 0x1f0000ff0000ff;
-    x = (x | x << 8) & 0x100f00f00f00f00f;
-    x = (x | x << 4) & 0x10c30c30c30c30c3;
-    return (x | x << 2) & 0x1249249249249249;
-}
-
-// Triangles by their middles in the order of a curve that fills space by octants (Morton 1966): halves
-// of it, and halves of these, lie together.
+// Triangles by their middles along a curve.
 void sort_along_curve(const Mesh &mesh, std::vector<std::uint32_t> &triangles) {
-    constexpr double steps = 1 << 21; // along each axis
-    const auto middle = [&](std::uint32_t number) {
-        Real3 m{};
-        for (const std::uint32_t v : mesh.triangles[number])
+    std::vector<Real3> middles;
+    middles.reserve(triangles.size());
+    for (const std::uint32_t t : triangles) {
+        Real3 &m = middles.emplace_back();
+        for (const std::uint32_t v : mesh.triangles[t])
             for (std::size_t i = 0; i < 3; ++i) m[i] += mesh.vertices[v][i] / 3.0;
-        return m;
-    };
-    Real3 lo = middle(triangles[0]), hi = lo;
-    for (const std::uint32_t t : triangles) {
-        const Real3 m = middle(t);
-        for (std::size_t i = 0; i < 3; ++i)
-            lo[i] = std::min(lo[i], m[i]), hi[i] = std::max(hi[i], m[i]);
     }
-    const double longest = std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]});
-    const double scale = longest > 0 ? (steps - 1) / longest : 0;
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
-    order.reserve(triangles.size());
-    for (const std::uint32_t t : triangles) {
-        const Real3 m = middle(t);
-        std::uint64_t key = 0;
-        for (std::size_t i = 0; i < 3; ++i)
-            key |= spread(static_cast<std::uint64_t>(scale * (m[i] - lo[i]))) << i;
-        order.push_back({key, t});
-    }
-    std::ranges::sort(order);
-    for (std::size_t k = 0; k < order.size(); ++k) triangles[k] = order[k].second;
+    const std::vector<std::uint32_t> before = triangles;
+    const std::vector<std::uint32_t> order = order_along_curve(middles);
+    for (std::size_t k = 0; k < order.size(); ++k) triangles[k] = before[order[k]];
 }
 
 std::vector<std::uint32_t> all_of(const Mesh &mesh) {

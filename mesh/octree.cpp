@@ -245,7 +245,6 @@ void measure_seams(const Octree &octree, Divider &divider, std::span<const Cell>
                    bool closely, std::span<double> widths) {
     const double thin = seam_thickness(octree.lattice);
     const Node &first = octree.nodes[static_cast<std::size_t>(cells[0].node)];
-    const cpu::ShortTape &tape = *octree.tapes[static_cast<std::size_t>(first.task)];
     std::vector<Extent> extents;
     std::vector<std::size_t> asked;
     for (std::size_t k = 0; k < cells.size(); ++k) {
@@ -256,6 +255,15 @@ void measure_seams(const Octree &octree, Divider &divider, std::span<const Cell>
                            point_of(octree.lattice, corner(cell.at, side, 7))});
         asked.push_back(k);
     }
+    if (extents.empty()) return;
+    Extent all = extents[0];
+    for (const Extent &one : extents)
+        for (std::size_t i = 0; i < 3; ++i)
+            all.lo[i] = std::min(all.lo[i], one.lo[i]), all.hi[i] = std::max(all.hi[i], one.hi[i]);
+    const TapePtr shorter =
+        tape_in(divider.evaluator, divider.boxes,
+                octree.tapes[static_cast<std::size_t>(first.task)], all.lo, all.hi);
+    const cpu::ShortTape &tape = *shorter;
     const std::vector<Sighting> seen = look_for_seams(divider.evaluator, tape, extents, thin);
     for (std::size_t n = 0; n < asked.size(); ++n) {
         const Node &node = octree.nodes[static_cast<std::size_t>(cells[asked[n]].node)];

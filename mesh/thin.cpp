@@ -13,11 +13,25 @@ constexpr int most_looks = 7;      // each 8 times closer than the one before
 constexpr double closer = 1.0 / 8; // … at where the field was nearest to 0
 constexpr int sharp = 8;           // steps: what is that thick is measured well enough
 constexpr double near_zero = 4;    // steps: a field that is farther from 0 does not come to it
+constexpr double farthest = 1.25;  // sides: no look ends so far from its place
+
+// Holds where all looks from a place are.
+TapePtr tape_about(Evaluator &evaluator, const Lattice &lattice, double side, const Point &at) {
+    Point lo{}, hi{};
+    const double far = farthest * side + 4 * lattice.ulp;
+    for (std::size_t i = 0; i < 3; ++i) {
+        lo[i] = static_cast<float>(at[i] - far);
+        hi[i] = static_cast<float>(at[i] + far);
+    }
+    cpu::Boxes boxes;
+    return tape_in(evaluator, boxes, evaluator.field.whole, lo, hi);
+}
 
 } // namespace
 
 Thin thin_at(Evaluator &evaluator, const Lattice &lattice, double side, const Point &at) {
-    const cpu::ShortTape &tape = *evaluator.field.whole;
+    const TapePtr shorter = tape_about(evaluator, lattice, side, at);
+    const cpu::ShortTape &tape = *shorter;
     Points points;
     points.add(at);
     std::array<std::vector<float>, 4> slope;

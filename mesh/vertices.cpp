@@ -13,7 +13,7 @@ constexpr double share_of_margin = 1.0 / 1024;
 constexpr int root_steps = 9;         // of the Illinois method
 constexpr double closing = 1.0 / 256; // of an edge: how near its signs are asked about a root
 constexpr double smooth_cosine = 0.9; // normals that are no farther apart are one smooth surface's
-constexpr std::size_t group_size = 2048;
+constexpr std::size_t group_size = 256;
 
 // Things of which each lies in one task's cell, in groups of one task each, so that a tape runs over
 // many points.
@@ -43,7 +43,20 @@ struct Memory {
     Points points;
     std::vector<float> values;
     std::array<std::vector<float>, 4> gradients;
+    cpu::Boxes boxes;
 };
+
+// A tape that holds between some of a lattice's points.
+TapePtr tape_between(Memory &memory, const Lattice &lattice, const TapePtr &tape,
+                     const std::vector<std::array<Index, 2>> &ends) {
+    if (is_short(*tape) || ends.empty()) return tape;
+    Index low = ends[0][0], high = low;
+    for (const auto &[from, to] : ends)
+        for (std::size_t i = 0; i < 3; ++i)
+            low[i] = std::min(low[i], from[i]), high[i] = std::max(high[i], to[i]);
+    return tape_in(memory.evaluator, memory.boxes, tape, point_of(lattice, low),
+                   point_of(lattice, high));
+}
 
 // The unit vector of a gradient; `fallback` where it has no direction.
 Point unit(const Memory &memory, std::size_t k, const Point &fallback) {
@@ -101,13 +114,20 @@ struct Roots {
     std::vector<double> low, high, low_value, high_value;
 };
 
-void find_roots(Memory &memory, const cpu::ShortTape &tape, const Lattice &lattice,
-                const Loops &loops, const Group &group, Vertices &vertices) {
+void find_roots(Memory &memory, const TapePtr &of_task, const Lattice &lattice, const Loops &loops,
+                const Group &group, Vertices &vertices) {
     const std::size_t n = group.members.size();
     Roots roots;
     const auto crossing_of = [&](std::size_t k) -> const Crossing & {
         return loops.crossings[group.members[k]];
     };
+    std::vector<std::array<Index, 2>> ends;
+    for (std::size_t k = 0; k < n; ++k) {
+        ends.push_back({crossing_of(k).low, crossing_of(k).low});
+        ends.back()[1][crossing_of(k).axis] += crossing_of(k).length;
+    }
+    const TapePtr shorter = tape_between(memory, lattice, of_task, ends);
+    const cpu::ShortTape &tape = *shorter;
     std::vector<float> from(n), to(n);
     memory.points.clear();
     for (const bool high : {false, true})
@@ -263,9 +283,15 @@ void place_patch(const Lattice &lattice, const Loops &loops, const Patch &patch,
 // A step towards the surface along the gradient: planes meet beside a curved one, and where an edge's
 // normal was taken next to a corner they meet beside that. It is taken only where it ends nearer to 0
 // and in the cell, and at an edge or a corner only from farther than a 1,024th of the cell's side.
-void approach(Memory &memory, const cpu::ShortTape &tape, const Lattice &lattice,
-              const Loops &loops, const Group &group, const std::vector<std::uint8_t> &smooth,
-              Vertices &vertices) {
+void approach(Memory &memory, const TapePtr &of_task, const Lattice &lattice, const Loops &loops,
+              const Group &group, const std::vector<std::uint8_t> &smooth, Vertices &vertices) {
+    std::vector<std::array<Index, 2>> ends;
+    for (const std::uint32_t p : group.members) {
+        const Cell &cell = loops.patches[p].cell;
+        ends.push_back({cell.at, corner(cell.at, lattice.cells(cell.level), 7)});
+    }
+    const TapePtr shorter = tape_between(memory, lattice, of_task, ends);
+    const cpu::ShortTape &tape = *shorter;
     memory.points.clear();
     for (const std::uint32_t p : group.members) memory.points.add(vertices.in_cell[p]);
     gradients_at(memory.evaluator, tape, memory.points, memory.gradients);
@@ -358,8 +384,8 @@ Vertices place_vertices(const Octree &octree, const Field &field, const Loops &l
     const auto task_of_cell = [&](const Cell &cell) {
         return octree.nodes[static_cast<std::size_t>(cell.node)].task;
     };
-    const auto tape_of = [&](const Group &group) -> const cpu::ShortTape & {
-        return *octree.tapes[static_cast<std::size_t>(group.task)];
+    const auto tape_of = [&](const Group &group) -> const TapePtr & {
+        return octree.tapes[static_cast<std::size_t>(group.task)];
     };
     const auto owner_of = [&](std::uint32_t c) { // the smallest cell about an edge: it has the edge
         const Crossing &crossing = loops.crossings[c];

@@ -232,13 +232,7 @@ std::vector<Block> divided(Splitter &splitter, const cpu::ShortTape &tape,
 }
 
 TapePtr tape_in(Splitter &splitter, const TapePtr &tape, const Block &piece) {
-    cpu::Boxes &boxes = splitter.boxes;
-    boxes.count = 16;
-    for (std::size_t k = 0; k < boxes.count; ++k)
-        for (std::size_t i = 0; i < 3; ++i)
-            boxes.lo[i][k] = piece.lo[i], boxes.hi[i][k] = piece.hi[i];
-    ranges_over(splitter.evaluator, *tape, boxes);
-    return shortened_in_first(splitter.evaluator, tape);
+    return tape_in(splitter.evaluator, splitter.boxes, tape, piece.lo, piece.hi);
 }
 
 CellSums sums_of_open(const Field &field, const std::vector<OpenBlock> &open, Walk walk,

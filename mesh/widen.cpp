@@ -2,134 +2,49 @@
 
 #include "mesh/exact.h"
 #include "mesh/mesh.h"
+#include "mesh/mover.h"
 #include "mesh/qef.h"
 #include "mesh/simplify_checks.h"
 #include "mesh/thin.h"
 #include "mesh/walk.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <utility>
 
 namespace fathom::mesh {
 namespace {
 
 constexpr double shows_walls = 1.8;   // cells across a wall that is seen whole at any angle
 constexpr double kept_off = 1.0 / 64; // of a wall's thickness: where moved vertices end before it
-constexpr int most_steps = 16;        // of Newton's method
 constexpr std::size_t few_cells = 64; // with thin walls: they are mended by themselves,
 constexpr std::size_t few_share = 32; // … as where so many times more are crossed
 constexpr double most_nodes_of_wider = 8e6; // of an octree of smaller cells, about
-constexpr std::size_t points_at_once = 1024;
-
-// Moves points outside of the solid along the field's slope to where it is `level`, and never
-// beyond its surface.
-struct Mover {
-    explicit Mover(const Field &field) : evaluator(field) {}
-    Evaluator evaluator;
-    Points points;
-    std::array<std::vector<float>, 4> slope;
-    std::vector<float> values;
-    std::vector<std::size_t> going;
-    std::vector<double> share; // of Newton's step
-
-    void move(std::span<Point> at, float level, float sign) {
-        const cpu::ShortTape &tape = *evaluator.field.whole;
-        share.assign(at.size(), 1);
-        going.clear();
-        for (std::size_t k = 0; k < at.size(); ++k) going.push_back(k);
-        std::vector<Point> next(at.size());
-        for (int step = 0; step < most_steps && !going.empty(); ++step) {
-            points.clear();
-            for (const std::size_t k : going) points.add(at[k]);
-            gradients_at(evaluator, tape, points, slope);
-            std::vector<std::size_t> moved;
-            points.clear();
-            for (std::size_t n = 0; n < going.size(); ++n) {
-                const std::size_t k = going[n];
-                double squares = 0;
-                for (std::size_t i = 0; i < 3; ++i)
-                    squares += double(slope[1 + i][n]) * slope[1 + i][n];
-                const double above = double(sign) * slope[0][n] - level;
-                if (!(squares > 1e-6) || !(std::fabs(above) > 0.25 * level)) continue;
-                for (std::size_t i = 0; i < 3; ++i)
-                    next[k][i] = static_cast<float>(at[k][i] - share[k] * sign * above *
-                                                                   slope[1 + i][n] / squares);
-                moved.push_back(k);
-                points.add(next[k]);
-            }
-            values_at(evaluator, tape, points, values);
-            for (std::size_t n = 0; n < moved.size(); ++n) {
-                const std::size_t k = moved[n];
-                if (sign * values[n] > 0)
-                    at[k] = next[k];
-                else
-                    share[k] *= 0.5;
-            }
-            going = std::move(moved);
-        }
-    }
-
-    // How far from each point the field has another sign, by looks along its slope; none: not seen.
-    void look_beyond(std::span<const Point> at, float level, float sign,
-                     std::vector<std::optional<float>> &far) {
-        const cpu::ShortTape &tape = *evaluator.field.whole;
-        constexpr std::array<float, 4> looks{2, 4, 16, 32}; // times the level
-        far.assign(at.size(), {});
-        points.clear();
-        for (const Point &p : at) points.add(p);
-        gradients_at(evaluator, tape, points, slope);
-        points.clear();
-        for (std::size_t k = 0; k < at.size(); ++k) {
-            const double rate = std::hypot(slope[1][k], slope[2][k], slope[3][k]);
-            for (const float look : looks) {
-                Point p = at[k];
-                for (std::size_t i = 0; rate > 1e-3 && i < 3; ++i)
-                    p[i] -= static_cast<float>(sign * look * level * slope[1 + i][k] / rate);
-                points.add(p);
-            }
-        }
-        values_at(evaluator, tape, points, values);
-        for (std::size_t k = 0; k < at.size(); ++k)
-            for (std::size_t n = looks.size(); n-- > 0;)
-                if (const std::size_t look = looks.size() * k + n;
-                    (values[look] <= 0) != (slope[0][k] <= 0))
-                    far[k] =
-                        static_cast<float>(distance(real(points[look]), real(at[k])) * (1 + 1e-6));
-    }
-};
 
 // Where the field changes its sign near vertices that were moved, as the roots of a mesh.
 void find_roots(const Field &field, float level, float sign, unsigned threads, Made &made,
                 Progress &progress) {
-    const std::vector<Point> &at = made.mesh.vertices;
-    std::vector<std::vector<std::optional<float>>> far((at.size() + points_at_once - 1) /
-                                                       points_at_once);
-    in_parallel(
-        far.size(), threads, progress, [&] { return Mover(field); },
-        [&](Mover &mover, std::size_t number) {
-            const std::size_t first = number * points_at_once;
-            mover.look_beyond(
-                std::span(at).subspan(first, std::min(points_at_once, at.size() - first)), level,
-                sign, far[number]);
-        });
+    std::vector<Point> &at = made.mesh.vertices;
+    std::vector<std::optional<float>> far(at.size());
+    by_some(field, at, threads, progress, [&](Mover &mover, Numbers which, std::span<Point> some) {
+        std::vector<std::optional<float>> here;
+        mover.look_beyond(some, level, sign, here);
+        for (std::size_t n = 0; n < which.size(); ++n) far[which[n]] = here[n];
+    });
+    if (progress.cancelled) return;
     for (std::size_t k = 0; k < at.size(); ++k)
-        if (const auto &slack = far[k / points_at_once][k % points_at_once]) {
+        if (far[k]) {
             made.roots.push_back(at[k]);
-            made.root_slack.push_back(*slack);
+            made.root_slack.push_back(*far[k]);
         }
 }
 
 // Places at the surface.
 std::vector<Point> moved(const Field &field, std::vector<Point> at, float level, float sign,
                          unsigned threads, Progress &progress) {
-    in_parallel((at.size() + points_at_once - 1) / points_at_once, threads, progress,
-                [&] { return Mover(field); },
-                [&](Mover &mover, std::size_t number) {
-                    const std::size_t first = number * points_at_once;
-                    mover.move(
-                        std::span(at).subspan(first, std::min(points_at_once, at.size() - first)),
-                        level, sign);
-                });
+    by_some(field, at, threads, progress,
+            [&](Mover &mover, Numbers, std::span<Point> some) { mover.move(some, level, sign); });
     return at;
 }
 
@@ -139,13 +54,9 @@ std::vector<Point> moved(const Field &field, std::vector<Point> at, float level,
 void find_edges(const Field &field, const Made &drawn, float level, float sign, unsigned threads,
                 std::vector<Point> &at, Progress &progress) {
     constexpr double sharp = 0.9; // of two normals: the cosine below which an edge is between them
-    const std::vector<Point> roots = moved(field, drawn.roots, level, sign, threads, progress);
+    std::vector<Point> roots = moved(field, drawn.roots, level, sign, threads, progress);
     if (progress.cancelled) return;
-    Evaluator evaluator(field);
-    Points points;
-    for (const Point &p : roots) points.add(p);
-    std::array<std::vector<float>, 4> slope;
-    gradients_at(evaluator, *field.whole, points, slope);
+    const auto slope = slopes_at(field, roots, threads, progress);
     const double reach = 0.1 * drawn.octree.lattice.side(drawn.octree.lattice.level);
     std::vector<std::uint32_t> patches;
     std::vector<Point> found;
@@ -182,13 +93,10 @@ void find_edges(const Field &field, const Made &drawn, float level, float sign, 
         found.push_back(
             {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])});
     }
-    points.clear();
-    for (const Point &p : found) points.add(p);
-    std::vector<float> values;
-    values_at(evaluator, *field.whole, points, values);
+    const auto values = slopes_at(field, found, threads, progress);
     const std::vector<Point> near = moved(field, found, level, sign, threads, progress);
     for (std::size_t k = 0; k < found.size(); ++k)
-        if (sign * values[k] > 0) at[patches[k]] = near[k];
+        if (sign * values[0][k] > 0) at[patches[k]] = near[k];
 }
 
 // Moves vertices as far as triangles keep areas and do not cross. `from`: where none cross. `all`: it
@@ -312,11 +220,41 @@ std::optional<Made> moved_to_surface(const Field &field, const Settings &setting
     return result;
 }
 
+// From how many places near the surface steps of sphere tracing come to another side within a width.
+std::size_t sides_near(Mover &mover, std::span<Point> at, float level, float sign, double width) {
+    constexpr int most = 32; // steps
+    mover.move(at, level, sign);
+    mover.look_at(at);
+    const std::array<std::vector<float>, 4> slope = mover.slope;
+    std::vector<float> values = slope[0];
+    std::vector<double> gone(at.size(), 0);
+    std::size_t hits = 0;
+    for (int step = 0; step < most; ++step) {
+        mover.points.clear();
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            const double value = double(sign) * values[k],
+                         rate = std::hypot(slope[1][k], slope[2][k], slope[3][k]);
+            if (step == 0 && !(value > 0 && value < 8 * level && rate > 1e-3)) gone[k] = unbounded;
+            if (gone[k] < width && !(value > 0.5 * level)) {
+                hits += gone[k] > 4 * level; // it has come to another side
+                gone[k] = unbounded;
+            }
+            Point p = at[k];
+            if (gone[k] < width) gone[k] += value;
+            for (std::size_t i = 0; gone[k] < width && i < 3; ++i)
+                p[i] += static_cast<float>(sign * gone[k] * slope[1 + i][k] / rate);
+            mover.points.add(p);
+        }
+        values_at(mover.evaluator, mover.tape_at(), mover.points, values);
+    }
+    return hits;
+}
+
 // Whether gaps between walls, or walls between gaps, are seen that are narrower than what both sides
 // are moved by: from places near the surface by steps of sphere tracing.
-bool may_close(const Field &field, const Made &made, const ThinWalls &walls, double width) {
+bool may_close(const Field &field, const Made &made, const ThinWalls &walls, double width,
+               unsigned threads, Progress &progress) {
     constexpr std::size_t looks = 4096, few = 4;
-    constexpr int most = 32; // steps
     const std::vector<Cell> cells = open_leaves(made.octree);
     const Lattice &lattice = made.octree.lattice;
     const std::size_t count = std::min(cells.size(), looks);
@@ -330,37 +268,10 @@ bool may_close(const Field &field, const Made &made, const ThinWalls &walls, dou
         at.push_back({});
         for (std::size_t i = 0; i < 3; ++i) at.back()[i] = 0.5f * (lo[i] + hi[i]);
     }
-    Mover mover(field);
-    mover.move(at, level, sign);
-    Points points;
-    for (const Point &p : at) points.add(p);
-    std::array<std::vector<float>, 4> slope;
-    gradients_at(mover.evaluator, *field.whole, points, slope);
-    std::vector<double> gone(count, 0);
-    std::size_t hits = 0;
-    for (int step = 0; step < most; ++step) {
-        for (std::size_t k = 0; k < count; ++k) {
-            const double value = double(sign) * slope[0][k],
-                         rate = std::hypot(slope[1][k], slope[2][k], slope[3][k]);
-            if (step == 0 && !(value > 0 && value < 8 * level && rate > 1e-3)) gone[k] = unbounded;
-            if (!(gone[k] < width)) continue;
-            if (!(value > 0.5 * level)) { // it has come to another side
-                hits += gone[k] > 4 * level;
-                gone[k] = unbounded;
-                continue;
-            }
-            gone[k] += value;
-        }
-        points.clear();
-        for (std::size_t k = 0; k < count; ++k) {
-            Point p = at[k];
-            const double rate = std::hypot(slope[1][k], slope[2][k], slope[3][k]);
-            for (std::size_t i = 0; gone[k] < width && i < 3; ++i)
-                p[i] += static_cast<float>(sign * gone[k] * slope[1 + i][k] / rate);
-            points.add(p);
-        }
-        values_at(mover.evaluator, *field.whole, points, slope[0]);
-    }
+    std::atomic<std::size_t> hits{0};
+    by_some(field, at, threads, progress, [&](Mover &mover, Numbers, std::span<Point> some) {
+        hits += sides_near(mover, some, level, sign, width);
+    });
     return hits > few;
 }
 
@@ -372,18 +283,18 @@ Doubt doubt_of(const Made &made, const Certificate &certificate) {
 
 std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
                                 const Settings &settings, const Made &made,
-                                std::span<const Cell> cells, Progress &progress) {
+                                std::span<const Cell> cells, bool certified, Progress &progress) {
     std::size_t crossed = 0;
     for (const Node &node : made.octree.nodes) crossed += node.children == none && node.crossed();
     if (cells.size() < few_cells || few_share * cells.size() < crossed) return std::nullopt;
     const ThinWalls walls = thin_walls_of(field, settings, made, cells, progress);
     if (!(walls.thickness > 0)) return std::nullopt;
-    return draw_wider(scene, field, settings, made, walls, progress);
+    return draw_wider(scene, field, settings, made, walls, certified, progress);
 }
 
 std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
                                 const Settings &settings, const Made &made, const ThinWalls &walls,
-                                Progress &progress) {
+                                bool certified, Progress &progress) {
     std::optional<Wider> best;
     const double from = progress.from, to = progress.to;
     const auto affordable = [&](double times) {
@@ -395,7 +306,7 @@ std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
     std::optional<Shown> coarser;                    // by cells of twice the side
     std::optional<std::pair<WiderSolid, Made>> next; // drawn to be compared
     for (const double times : {1.0, 2.0, 4.0}) {
-        if (!affordable(times)) break;
+        if (!affordable(times) || (!certified && times > 2)) break;
         progress.from = from, progress.to = from + 0.2 * (to - from);
         const auto draw = [&](double n) {
             const WiderSolid solid = wider_solid(settings, made, walls, n);
@@ -410,41 +321,41 @@ std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
         next.reset();
         if (progress.cancelled) break;
         const std::optional<Form> here = form(drawn);
-        if (!here) {
-            coarser = Shown{};
-            continue;
-        }
+        const std::optional<Shown> before = std::exchange(coarser, Shown{here});
+        if (!here) continue;
         progress.phase(from + 0.35 * (to - from));
         std::optional<Made> wide =
             moved_to_surface(field, settings, made, walls, solid, std::move(drawn), progress);
         if (progress.cancelled) break;
-        if (wide) {
-            progress.phase(to);
-            Wider wider{std::move(*wide), {}};
+        if (!wide) continue;
+        progress.phase(to);
+        Wider wider{std::move(*wide), {}};
+        if (certified)
             wider.certificate = certify(field, settings, wider.made, nullptr, progress);
-            if (progress.cancelled) break;
-            if (wider.certificate.near()) {
-                bool same = false;
-                if (!coarser) coarser = Shown{form(draw(0.5 * times).second)};
-                same = coarser->form == here;
-                if (!same && affordable(2 * times)) {
-                    next = draw(2 * times);
-                    same = form(next->second) == here;
-                }
-                if (progress.cancelled) break;
-                wider.certificate.shape_doubted =
-                    !same || may_close(field, made, walls, 2 * std::fabs(solid.by));
+        else if (!is_near(field, settings, wider.made, progress))
+            continue;
+        if (progress.cancelled) break;
+        if (wider.certificate.near()) {
+            bool same = (before ? before->form : form(draw(0.5 * times).second)) == here;
+            if (!same && certified && affordable(2 * times)) {
+                next = draw(2 * times);
+                same = form(next->second) == here;
             }
-            const auto better = [&] {
-                if (wider.certificate.near() != best->certificate.near())
-                    return wider.certificate.near();
-                return wider.certificate.certified() || doubt_of(wider.made, wider.certificate) <
-                                                            doubt_of(best->made, best->certificate);
-            };
-            if (!best || better()) best = std::move(wider);
-            if (best->certificate.certified()) break;
+            if (progress.cancelled) break;
+            wider.certificate.shape_doubted =
+                !same || may_close(field, made, walls, 2 * std::fabs(solid.by),
+                                   threads_of(settings), progress);
         }
-        coarser = Shown{here};
+        const Doubt doubt = doubt_of(wider.made, wider.certificate);
+        const bool hopeless = best && !wider.certificate.near() && !best->certificate.near() &&
+                              2 * doubt.volume > doubt_of(best->made, best->certificate).volume;
+        const auto better = [&] {
+            if (wider.certificate.near() != best->certificate.near())
+                return wider.certificate.near();
+            return wider.certificate.certified() || doubt < doubt_of(best->made, best->certificate);
+        };
+        if (!best || better()) best = std::move(wider);
+        if (best->certificate.certified() || hopeless) break;
     }
     return best;
 }

@@ -32,13 +32,15 @@ struct ThinWalls {
 // Where many cells are undecided, and most of what is in them are walls, or gaps, by samples: the mesh
 // that is drawn so, by cells that are up to four times smaller if need be; the first that is certified,
 // else the one with least in doubt. None: there are no such walls, or no such mesh was made.
+// `certified`: else all that matters is whether it would be, as far as both distances go; where it is
+// not, nothing more is known of it, and cells are at most half as large.
 // Its shape is doubted where cells of half the side, or of twice the side, show other pieces and handles.
 std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
                                 const Settings &settings, const Made &made,
-                                std::span<const Cell> cells, Progress &progress);
+                                std::span<const Cell> cells, bool certified, Progress &progress);
 // The same where it is known what is thin.
 std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
                                 const Settings &settings, const Made &made, const ThinWalls &walls,
-                                Progress &progress);
+                                bool certified, Progress &progress);
 
 } // namespace fathom::mesh
