@@ -126,6 +126,11 @@ struct FarmCommand {
     bool dry_run = false; // prints what would be done
     std::vector<std::string> options; // of the engine
 };
+// A length as it was said: 0.01 of the scene's units, or 0.01mm.
+struct Length {
+    double number = 0; // 0: none
+    std::string unit;  // a word of unit_names(); empty: the scene's
+};
 // The solid that `mesh`, `measure`, `slice` and `volume` look at, and how finely.
 struct SolidArguments {
     SceneArguments scene;
@@ -134,7 +139,7 @@ struct SolidArguments {
     bool flat = false;    // its flat shapes, as solids about z = 0
     bool maybe = false;   // `flat` where it has nothing else
     std::string part;     // of the scene, alone; empty: all of it
-    double tolerance = 0; // the side of the cells; 0: by resolution
+    Length tolerance;     // the side of the cells; none: by resolution
     int resolution = 128; // cells along the longest side of the solid's box
     std::optional<std::array<std::array<double, 3>, 2>> bounds;
     double time = 0;             // with frames, when frame 0 is
@@ -143,6 +148,7 @@ struct SolidArguments {
     double frame_rate = 30;
     std::vector<Sweep> sweeps;
     std::string units;               // what a length of 1 is, a word of unit_names(); empty: unsaid
+    std::string unsaid = "mm";       // … then: where other lengths have a unit
     std::vector<std::string> fields; // functions of the point that a volume holds; none: distances
 };
 // `fathom mesh`.
@@ -150,7 +156,7 @@ struct MeshCommand {
     SolidArguments solid; // its scene's file is each of these in turn
     std::vector<std::string> files;
     std::string out;             // `{}` stands for the scene's name
-    double simplify = 0;         // a distance; 0: no triangles are left out
+    Length simplify;             // a distance; none: no triangles are left out
     bool parts = false;          // each an object of its own
     std::optional<bool> certify; // unset: where a document is wanted
 };
@@ -173,8 +179,8 @@ struct SliceCommand {
 struct VolumeCommand {
     SolidArguments solid;
     std::string out;
-    double voxel = 0; // its side; 0: by resolution
-    double band = 3;  // voxels to each side of the surface, of a .vdb
+    Length voxel;    // its side; none: by resolution
+    double band = 3; // voxels to each side of the surface, of a .vdb
     bool certify = true;
 };
 // `fathom eval`.

@@ -246,7 +246,7 @@ double size_of(const std::vector<Row> &rows) {
 
 // How narrow clearances are enclosed, unless said: a 2,000th of the smaller part's box.
 double tolerance_of(const MeasureCommand &command, const v1::Scene &a, const v1::Scene &b) {
-    if (command.solid.tolerance > 0) return command.solid.tolerance;
+    if (command.solid.tolerance.number > 0) return in_scene(command.solid.tolerance, command.solid);
     double least = 2;
     for (const v1::Scene *scene : {&a, &b}) {
         if (!scene->facts().bounds) continue;

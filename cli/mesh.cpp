@@ -237,7 +237,9 @@ Exit refused(const MeshCommand &command, v1::MeshFormat format, Terminal &termin
     const std::string &file = command.solid.scene.file;
     if (overwrites(file, command.out, terminal) || misnamed(command.out, Content::Mesh, terminal))
         return usage_error;
-    if (!command.solid.units.empty() && format != v1::MeshFormat::ThreeMf &&
+    const bool of_lengths = // --units says what those are
+        !command.solid.tolerance.unit.empty() || !command.simplify.unit.empty();
+    if (!command.solid.units.empty() && !of_lengths && format != v1::MeshFormat::ThreeMf &&
         format != v1::MeshFormat::Glb) {
         terminal.say(fmt::format("fathom: --units: `{}` says nothing of units; .3mf and .glb do",
                                  command.out));
@@ -279,7 +281,7 @@ Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &f
     v1::MeshOptions options = options_of(frame.arguments);
     options.certify = command.certify.value_or(command.solid.json);
     options.colors = format != v1::MeshFormat::Stl;
-    options.simplify = command.simplify;
+    options.simplify = in_scene(command.simplify, frame.arguments);
     options.progress = frame.progress;
     Objects objects;
     if (command.parts)
@@ -301,7 +303,7 @@ Exit make(const MeshCommand &command, v1::MeshFormat format, const SolidFrame &f
                           const v1::Mesh &mesh) {
         if (!command.solid.json) say_certificate(mesh, what, terminal);
         say_undecided(mesh, what, terminal);
-        say_simplified(mesh, what, command.simplify, terminal);
+        say_simplified(mesh, what, options.simplify, terminal);
         objects.all.push_back({called, &mesh});
     };
     if (command.parts) {
@@ -351,6 +353,7 @@ Exit run(const MeshCommand &command, Terminal &terminal) {
         one.solid.scene.file = file;
         one.solid.several = command.files.size() > 1;
         one.out = out_of(command, file);
+        if (v1::mesh_format(one.out) == v1::MeshFormat::Glb) one.solid.unsaid = "m";
         worst = std::max(worst, run_one(one, terminal));
         if (terminal.reader_gone()) break;
     }

@@ -31,7 +31,7 @@ std::vector<OptionRow> solid_rows(SolidArguments &solid);
 std::vector<OptionRow> solid_film_rows(SolidArguments &solid); // of mesh, slice and volume
 OptionRow units_row(SolidArguments &solid, const std::string &what_for);
 std::vector<OptionRow> measure_rows(MeasureCommand &command);
-OptionRow simplify_row(double &tolerance);
+OptionRow simplify_row(Length &tolerance);
 std::vector<OptionRow> slice_rows(SliceCommand &command);
 std::vector<OptionRow> volume_rows(VolumeCommand &command);
 

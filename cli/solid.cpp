@@ -1,5 +1,7 @@
 #include "cli/solid.h"
 
+#include "base/single.h"
+#include "base/text.h"
 #include "cli/frames.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
@@ -67,6 +69,23 @@ std::vector<std::string> unit_names() {
     std::vector<std::string> names;
     for (const UnitRow &row : units) names.emplace_back(row.name);
     return names;
+}
+
+std::string read_length(const std::string &word, Length &length) {
+    const std::size_t end = word.find_last_not_of("abcdefghijklmnopqrstuvwxyz") + 1;
+    const std::string unit = word.substr(end);
+    const std::optional<double> number = parse_number(word.substr(0, end));
+    if (!number || !(*number > 0) || !fits_single(*number) || (!unit.empty() && !unit_named(unit)))
+        return fmt::format("wants a length above 0, as 0.01 or 0.01mm, not `{}`", word);
+    length = {*number, unit};
+    return "";
+}
+
+double in_scene(const Length &length, const SolidArguments &solid) {
+    const UnitRow *of = unit_named(length.unit);
+    const UnitRow *one = unit_named(solid.units.empty() ? solid.unsaid : solid.units);
+    if (!of || !one || of == one) return length.number;
+    return length.number * of->metres / one->metres;
 }
 
 std::optional<v1::Scene> part_named(const v1::Scene &scene, const std::string &name,
@@ -180,7 +199,7 @@ void stop_if_interrupted(Terminal &terminal) {
 
 v1::MeshOptions options_of(const SolidArguments &arguments) {
     v1::MeshOptions options;
-    options.tolerance = arguments.tolerance;
+    options.tolerance = in_scene(arguments.tolerance, arguments);
     options.resolution = arguments.resolution;
     options.time = arguments.time;
     if (!arguments.bounds) return options;

@@ -17,6 +17,10 @@ struct UnitRow {
 };
 const UnitRow *unit_named(std::string_view name); // none: there is no such unit
 std::vector<std::string> unit_names();
+// Reads a length, as 0.01 or 0.01mm. What is wrong with it.
+std::string read_length(const std::string &word, Length &length);
+// In the scene's units.
+double in_scene(const Length &length, const SolidArguments &solid);
 
 // A scene, or the part of it that is wanted. Says why there is none, and then holds no scene.
 struct Solid {

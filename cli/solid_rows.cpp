@@ -13,14 +13,9 @@ namespace fathom::cli {
 std::vector<OptionRow> solid_rows(SolidArguments &solid) {
     return {
         {"--tolerance", "T",
-         "the side of the cells that the surface is looked for in, in the scene's units",
-         [&](const std::string &word) {
-             const std::optional<double> number = parse_number(word);
-             if (!number || !(*number > 0) || !fits_single(*number))
-                 return fmt::format("wants a length above 0, as 0.01, not `{}`", word);
-             solid.tolerance = *number;
-             return std::string();
-         }},
+         "the side of the cells that the surface is looked for in: 0.01 of the scene's units, or "
+         "0.01mm",
+         [&](const std::string &word) { return read_length(word, solid.tolerance); }},
         {"--resolution", "N",
          fmt::format("instead: cells along the longest side of the solid's box, {} unless said",
                      solid.resolution),
@@ -68,16 +63,10 @@ OptionRow units_row(SolidArguments &solid, const std::string &what_for) {
             }};
 }
 
-OptionRow simplify_row(double &tolerance) {
+OptionRow simplify_row(Length &tolerance) {
     return {"--simplify", "TOL",
-            "fewer triangles, no farther than this from those of the cells, in the scene's units",
-            [&](const std::string &word) {
-                const std::optional<double> number = parse_number(word);
-                if (!number || !(*number > 0) || !fits_single(*number))
-                    return fmt::format("wants a number above 0, as 0.01, not `{}`", word);
-                tolerance = *number;
-                return std::string();
-            }};
+            "fewer triangles, no farther than this length from those of the cells",
+            [&](const std::string &word) { return read_length(word, tolerance); }};
 }
 
 std::vector<OptionRow> slice_rows(SliceCommand &command) {
@@ -96,14 +85,8 @@ std::vector<OptionRow> slice_rows(SliceCommand &command) {
 
 std::vector<OptionRow> volume_rows(VolumeCommand &command) {
     std::vector<OptionRow> rows{
-        {"--voxel", "S", "the side of a voxel, in the scene's units",
-         [&](const std::string &word) {
-             const std::optional<double> number = parse_number(word);
-             if (!number || !(*number > 0) || !fits_single(*number))
-                 return fmt::format("wants a length above 0, as 0.01, not `{}`", word);
-             command.voxel = *number;
-             return std::string();
-         }},
+        {"--voxel", "S", "the side of a voxel, a length as of `mesh --tolerance`",
+         [&](const std::string &word) { return read_length(word, command.voxel); }},
         {"--band", "N", "of a .vdb: voxels to each side of the surface, 3 unless said",
          [&](const std::string &word) {
              const std::optional<double> number = parse_number(word);

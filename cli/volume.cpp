@@ -17,7 +17,7 @@ namespace {
 v1::VolumeOptions volume_options(const VolumeCommand &command, const SolidFrame &frame) {
     const v1::MeshOptions solid = options_of(frame.arguments);
     v1::VolumeOptions options;
-    options.side = command.voxel;
+    options.side = in_scene(command.voxel, command.solid);
     options.resolution = solid.resolution;
     options.bounds = solid.bounds;
     options.time = solid.time;

@@ -37,6 +37,37 @@ TEST_CASE("a mesh is written in the format of its suffix") {
     CHECK((finer.exit == 0 && finer.out.size() > stl.size()));
 }
 
+TEST_CASE(
+    "lengths may have a unit: what --units says a length of 1 is, mm unless said, m of a .glb") {
+    ScratchFolder folder;
+    folder.write("ring.sdf", "torus(1, 0.3)\n");
+    const auto stl = [&](const std::string &options) {
+        const Result made = shell(folder, "fathom mesh ring.sdf -o a.stl " + options);
+        CHECK((made.exit == 0 && made.err.empty()));
+        return folder.read("a.stl");
+    };
+    const std::string scene_s = stl("--tolerance 0.125");
+    CHECK(stl("--tolerance 0.125mm") == scene_s);
+    CHECK(stl("--tolerance 0.0125cm --units mm") == scene_s);
+    CHECK(stl("--tolerance 3.175mm --units in") == scene_s);
+    CHECK(stl("--tolerance 0.125in --units in --simplify 0.5in") ==
+          stl("--tolerance 0.125 --simplify 0.5"));
+    CHECK(stl("--tolerance 0.25mm") != scene_s);
+    CHECK(shell(folder, "fathom mesh ring.sdf -o a.glb --tolerance 125mm").exit == 0);
+    CHECK(shell(folder, "fathom mesh ring.sdf -o b.glb --tolerance 0.125").exit == 0);
+    CHECK(folder.read("a.glb") == folder.read("b.glb"));
+    CHECK(shell(folder, "fathom volume ring.sdf -o a.npy --voxel 0.2mm").exit == 0);
+    CHECK(shell(folder, "fathom volume ring.sdf -o b.npy --voxel 0.2").exit == 0);
+    CHECK(folder.read("a.npy") == folder.read("b.npy"));
+    CHECK(shell(folder, "fathom slice ring.sdf --y 0 -o a.svg --tolerance 2cm --units m").exit ==
+          0);
+    CHECK(shell(folder, "fathom slice ring.sdf --y 0 -o b.svg --tolerance 0.02 --units m").exit ==
+          0);
+    CHECK(folder.read("a.svg") == folder.read("b.svg"));
+    CHECK(shell(folder, "fathom measure ring.sdf --units in --tolerance 2.54mm").out ==
+          shell(folder, "fathom measure ring.sdf --units in --tolerance 0.1").out);
+}
+
 TEST_CASE("--json prints the certificate, and says partial where something is undecided") {
     ScratchFolder folder;
     folder.write("ball.sdf", "sphere(1)\n");
@@ -199,6 +230,8 @@ TEST_CASE("what has no mesh says why, and writes nothing") {
     fails("ball.sdf -o a.stl --units mm", 2, "says nothing of units");
     fails("ball.sdf -o a.3mf --units furlong", 2, "--units");
     fails("ball.sdf -o a.stl --tolerance -1", 2, "above 0");
+    fails("ball.sdf -o a.stl --tolerance 1furlong", 2, "as 0.01 or 0.01mm");
+    fails("ball.sdf -o a.stl --tolerance mm", 2, "as 0.01 or 0.01mm");
     fails("ball.sdf -o a.stl --tolerance 1 --resolution 5", 2, "one of them");
     fails("ball.sdf -o a.stl --resolution 0", 2, "--resolution");
     fails("ball.sdf -o a.stl --bounds 1,1,1,0,0,0", 2, "least corner");
