@@ -304,12 +304,11 @@ bool divide_again(const Field &field, const Settings &settings, std::vector<Cell
 void divide_for_shape(const Field &field, const Settings &settings, std::size_t most,
                       Mended &mended, Progress &progress) {
     constexpr int most_rounds = 10;
-    constexpr std::size_t few = 128; // cells
     for (int round = 0; round < most_rounds && !progress.cancelled; ++round) {
         const Lattice &lattice = mended.made.octree.lattice;
         std::vector<Cell> cells = mended.certificate.shape_cells;
         std::erase_if(cells, [&](const Cell &cell) { return cell.level >= lattice.depth; });
-        if (cells.empty() || mended.certificate.shape_open > few) return;
+        if (cells.empty() || mended.certificate.shape_open > few_open_leaves) return;
         Mended next = mended;
         if (!divide_again(field, settings, std::move(cells), most, next, progress) ||
             !next.certificate.near())

@@ -9,16 +9,19 @@
 namespace fathom::mesh {
 namespace {
 
-constexpr int halvings_of_leaf = 2;    // of a leaf
-constexpr int most_joined = 2;         // levels above the drawing level that are looked at first
+constexpr int halvings_of_leaf = 2; // of a leaf
+constexpr int most_joined = 2;      // levels above the drawing level that are looked at first
+constexpr std::size_t tasks_at_once = 16;
+constexpr int most_failed = 8;         // boxes above leaves; more of that size are not looked at
 constexpr std::size_t hopeless = 16;   // leaves of a task of which no slopes are known, or
 constexpr std::size_t too_many = 64;   // … in which it is open: no more looks
 constexpr double least_of_task = 5000; // kernels
 constexpr double by_rounding = 1e-9;   // of a length
 
 struct Facet {
-    Triangle3 at;
-    Real3 normal; // of length 1
+    Triangle3 at{};
+    Real3 normal{};   // of length 1
+    Real3 lo{}, hi{}; // of the box about it
 };
 
 // Whether a triangle and a box may have a point in common: no axis across which both lie apart.
@@ -61,11 +64,12 @@ std::optional<Real3> unit_of(const Real3 &way) {
 std::optional<Real3> way_across(const std::vector<Facet> &facets,
                                 const std::vector<std::uint32_t> &touched) {
     constexpr int most_turns = 32;
+    constexpr double enough = 0.7; // a cosine
     Real3 sum{};
     for (const std::uint32_t t : touched) sum = along(sum, facets[t].normal, 1);
     std::optional<Real3> way = unit_of(sum), best = way;
     double most = -unbounded;
-    for (int turn = 0; way && turn < most_turns; ++turn) {
+    for (int turn = 0; way && turn < most_turns && most < enough; ++turn) {
         double least = unbounded;
         std::uint32_t worst = 0;
         for (const std::uint32_t t : touched)
@@ -109,7 +113,8 @@ struct ShapeProver {
     Splitter splitter;
     const std::vector<Facet> &facets;
     const double ulp;
-    double kernels = 0; // so many may be looked at yet
+    double kernels = 0;           // so many may be looked at yet
+    std::array<int, 32> failed{}; // boxes of a level above leaves, one after the other, of a task
 
     Block grown(const Block &box) const {
         Block wide = box;
@@ -118,6 +123,21 @@ struct ShapeProver {
             wide.hi[i] = std::nextafter(static_cast<float>(box.hi[i] + ulp), INFINITY);
         }
         return wide;
+    }
+
+    bool overlaps(const Facet &facet, const Block &wide) const {
+        for (std::size_t i = 0; i < 3; ++i)
+            if (facet.lo[i] > wide.hi[i] || facet.hi[i] < wide.lo[i]) return false;
+        return true;
+    }
+
+    // Facets whose boxes touch a box: all that touch it, and some more.
+    std::vector<std::uint32_t> overlapping(const Block &wide,
+                                           const std::vector<std::uint32_t> &among) const {
+        std::vector<std::uint32_t> found;
+        for (const std::uint32_t t : among)
+            if (overlaps(facets[t], wide)) found.push_back(t);
+        return found;
     }
 
     std::vector<std::uint32_t> touching(const Block &wide,
@@ -129,7 +149,8 @@ struct ShapeProver {
         }
         std::vector<std::uint32_t> found;
         for (const std::uint32_t t : among)
-            if (may_touch(facets[t].at, middle, half)) found.push_back(t);
+            if (overlaps(facets[t], wide) && may_touch(facets[t].at, middle, half))
+                found.push_back(t);
         return found;
     }
 
@@ -142,26 +163,29 @@ struct ShapeProver {
                      const std::vector<std::uint32_t> &touched) {
         kernels -= tape.cost;
         Evaluator &evaluator = splitter.evaluator;
-        const std::optional<Linear> linear =
-            linear_over(evaluator, tape, splitter.boxes, wide.lo, wide.hi);
-        if (!linear) return Answer::Unknown;
-        const std::optional<Real3> mean =
-            unit_of({linear->slope[0], linear->slope[1], linear->slope[2]});
-        const std::optional<Real3> across = way_across(facets, touched);
-        std::optional<Real3> both;
-        if (mean && across) both = unit_of(along(*mean, *across, 1));
         const auto passes = [&](const Real3 &way) {
             return std::ranges::all_of(touched, [&](std::uint32_t t) {
                 return inner(facets[t].normal, way) > by_rounding;
             });
         };
-        const auto ways = {mean, across, both};
+        const std::optional<Real3> across = way_across(facets, touched);
+        if (!touched.empty() && !(across && passes(*across))) return Answer::No;
+        const std::optional<Rising> rising = rising_over(evaluator, tape, splitter.boxes, wide.lo,
+                                                         wide.hi, across.value_or(Real3{}));
+        if (!rising) return Answer::Unknown;
+        if (across && rising->least > by_rounding) return Answer::Yes;
+        const Linear &linear = rising->linear;
+        const std::optional<Real3> mean =
+            unit_of({linear.slope[0], linear.slope[1], linear.slope[2]});
+        std::optional<Real3> both;
+        if (mean && across) both = unit_of(along(*mean, *across, 1));
+        const auto ways = {mean, both};
         for (const std::optional<Real3> &way : ways) {
             if (!way || !passes(*way)) continue;
             double rise = 0, size = 0;
             for (std::size_t i = 0; i < 3; ++i) {
-                rise += (*way)[i] * linear->slope[i] - std::fabs((*way)[i]) * linear->spread[i];
-                size += std::fabs(linear->slope[i]) + linear->spread[i];
+                rise += (*way)[i] * linear.slope[i] - std::fabs((*way)[i]) * linear.spread[i];
+                size += std::fabs(linear.slope[i]) + linear.spread[i];
             }
             if (rise > by_rounding * size) return Answer::Yes;
         }
@@ -237,6 +261,7 @@ struct ShapeProver {
 
 // What is known of the leaves of a task.
 struct ShapeFound {
+    bool looked = false;
     std::size_t open = 0;    // leaves in which it is not known
     Real3 place{};           // one of them
     std::size_t unknown = 0; // of these, those of which no slopes are known
@@ -249,7 +274,7 @@ struct ShapeTask {
     const Lattice &lattice;
     const Grid &grid;
     const std::vector<Cell> &leaves;
-    TapePtr tape; // that holds about all of them
+    TapePtr tape{}; // that holds about all of them
 
     Block box_of(const Cell &leaf, int level) const {
         const std::int32_t side = lattice.cells(level);
@@ -281,13 +306,41 @@ struct ShapeTask {
             found.unknown += answer == ShapeProver::Answer::Unknown;
             return leave_open(1);
         }
-        if (last - first > 1 && prover.is_steady(*shorter, wide, prover.touching(wide, near)) ==
-                                    ShapeProver::Answer::Yes)
-            return;
+        int &failed = prover.failed[static_cast<std::size_t>(level)];
+        if (last - first > 1 && failed < most_failed) {
+            if (prover.is_steady(*shorter, wide, prover.overlapping(wide, near)) ==
+                ShapeProver::Answer::Yes) {
+                failed = 0;
+                return;
+            }
+            ++failed;
+        }
         for (std::size_t k = first, next; k < last; k = next) {
             const Point at = box_of(leaves[k], level + 1).lo;
             for (next = k + 1; next < last && box_of(leaves[next], level + 1).lo == at;) ++next;
             prove(prover, k, next, level + 1, found);
+        }
+    }
+
+    void prove_all(ShapeProver &prover, ShapeFound &found) {
+        constexpr float far = std::numeric_limits<float>::infinity();
+        Block all{{far, far, far}, {-far, -far, -far}};
+        const int level = std::max(lattice.level - most_joined, 0);
+        for (const Cell &leaf : leaves) {
+            const Block box = box_of(leaf, std::min(level, leaf.level));
+            for (std::size_t i = 0; i < 3; ++i) {
+                all.lo[i] = std::min(all.lo[i], box.lo[i]);
+                all.hi[i] = std::max(all.hi[i], box.hi[i]);
+            }
+        }
+        tape = tape_in(prover.splitter, prover.splitter.evaluator.field.whole, prover.grown(all));
+        prover.failed = {};
+        found.looked = true;
+        for (std::size_t k = 0, next; k < leaves.size(); k = next) {
+            const int of = std::min(level, leaves[k].level);
+            const Point at = box_of(leaves[k], of).lo;
+            for (next = k + 1; next < leaves.size() && box_of(leaves[next], of).lo == at;) ++next;
+            prove(prover, k, next, of, found);
         }
     }
 };
@@ -324,9 +377,8 @@ void prove_shape(const Field &field, const Settings &settings, const Made &made,
     std::vector<Facet> facets;
     Grid grid(point_of(lattice, {0, 0, 0}), lattice.side(lattice.level));
     for (const auto &t : made.mesh.triangles) {
-        Facet facet{{real(made.mesh.vertices[t[0]]), real(made.mesh.vertices[t[1]]),
-                     real(made.mesh.vertices[t[2]])},
-                    {}};
+        Facet facet;
+        for (std::size_t k = 0; k < 3; ++k) facet.at[k] = real(made.mesh.vertices[t[k]]);
         facet.normal =
             unit_of(outer(minus(facet.at[1], facet.at[0]), minus(facet.at[2], facet.at[0])))
                 .value_or(Real3{});
@@ -334,43 +386,44 @@ void prove_shape(const Field &field, const Settings &settings, const Made &made,
         for (const Real3 &p : facet.at)
             for (std::size_t i = 0; i < 3; ++i)
                 lo[i] = std::min(lo[i], p[i]), hi[i] = std::max(hi[i], p[i]);
+        facet.lo = lo, facet.hi = hi;
         grid.add(lo, hi, static_cast<std::uint32_t>(facets.size()));
         facets.push_back(facet);
     }
     grid.sort();
     std::size_t leaves = 0;
     for (const std::vector<Cell> &task : tasks) leaves += task.size();
+    // Some tasks from everywhere at once: where they leave too much open the others say nothing more.
     std::vector<ShapeFound> found(tasks.size());
-    in_parallel(
-        tasks.size(), threads_of(settings), progress,
-        [&] { return ShapeProver(field, made.octree, facets); },
-        [&](ShapeProver &prover, std::size_t number) {
-            ShapeTask task{made.octree, lattice, grid, tasks[number], {}};
-            constexpr float far = std::numeric_limits<float>::infinity();
-            Block all{{far, far, far}, {-far, -far, -far}};
-            const int level = std::max(lattice.level - most_joined, 0);
-            for (const Cell &leaf : task.leaves) {
-                const Block box = task.box_of(leaf, std::min(level, leaf.level));
-                for (std::size_t i = 0; i < 3; ++i) {
-                    all.lo[i] = std::min(all.lo[i], box.lo[i]);
-                    all.hi[i] = std::max(all.hi[i], box.hi[i]);
-                }
-            }
-            task.tape = tape_in(prover.splitter, field.whole, prover.grown(all));
-            prover.kernels =
-                std::max(least_of_task, work * static_cast<double>(task.leaves.size()) /
-                                            static_cast<double>(leaves));
-            for (std::size_t k = 0, next; k < task.leaves.size(); k = next) {
-                const int of = std::min(level, task.leaves[k].level);
-                const Point at = task.box_of(task.leaves[k], of).lo;
-                for (next = k + 1;
-                     next < task.leaves.size() && task.box_of(task.leaves[next], of).lo == at;)
-                    ++next;
-                task.prove(prover, k, next, of, found[number]);
-            }
-        });
+    const std::size_t rounds = (tasks.size() + tasks_at_once - 1) / tasks_at_once;
+    const double from = progress.from, to = progress.to;
+    std::size_t open = 0;
+    for (std::size_t round = 0; round < rounds; ++round) {
+        const auto count = (tasks.size() - round + rounds - 1) / rounds;
+        const auto number_of = [&](std::size_t k) { return round + k * rounds; };
+        if (open > few_open_leaves) {
+            for (std::size_t k = 0; k < count; ++k)
+                found[number_of(k)].open = tasks[number_of(k)].size();
+            continue;
+        }
+        progress.from = from + (to - from) * double(round) / double(rounds);
+        progress.to = from + (to - from) * double(round + 1) / double(rounds);
+        in_parallel(
+            count, threads_of(settings), progress,
+            [&] { return ShapeProver(field, made.octree, facets); },
+            [&](ShapeProver &prover, std::size_t k) {
+                ShapeTask task{made.octree, lattice, grid, tasks[number_of(k)]};
+                prover.kernels =
+                    std::max(least_of_task, work * static_cast<double>(task.leaves.size()) /
+                                                static_cast<double>(leaves));
+                task.prove_all(prover, found[number_of(k)]);
+            });
+        for (std::size_t k = 0; k < count; ++k) open += found[number_of(k)].open;
+    }
+    progress.from = from, progress.to = to;
+    bool placed = false;
     for (const ShapeFound &of : found) {
-        if (certificate.shape_open == 0 && of.open > 0) certificate.shape_place = of.place;
+        if (!placed && of.looked && of.open > 0) certificate.shape_place = of.place, placed = true;
         certificate.shape_open += of.open;
         certificate.shape_cells.insert(certificate.shape_cells.end(), of.cells.begin(),
                                        of.cells.end());

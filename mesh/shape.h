@@ -10,6 +10,8 @@ namespace fathom::mesh {
 // surface, and else in how many places that is open. Not looked for where that takes more than so many
 // kernels over boxes, about.
 inline constexpr double shape_work = 0.5e6;
+// Where it is open in more leaves the shape stays open: no others are looked at.
+inline constexpr std::size_t few_open_leaves = 128;
 void prove_shape(const Field &field, const Settings &settings, const Made &made, Progress &progress,
                  Certificate &certificate, double work = shape_work);
 

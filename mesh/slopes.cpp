@@ -155,11 +155,21 @@ std::optional<Linear> linear_in(const Slopes &slopes, const Evaluator &evaluator
 
 std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &tape,
                                   cpu::Boxes &boxes, const Point &lo, const Point &hi) {
+    const std::optional<Rising> rising = rising_over(evaluator, tape, boxes, lo, hi, {});
+    return rising ? std::optional(rising->linear) : std::nullopt;
+}
+
+std::optional<Rising> rising_over(Evaluator &evaluator, const cpu::ShortTape &tape,
+                                  cpu::Boxes &boxes, const Point &lo, const Point &hi,
+                                  const std::array<double, 3> &along) {
     const cpu::Program::Slot &result = evaluator.field.program.results[0];
     if (reaches_cut(evaluator.field, lo, hi) || result.shared || tape.steps.size() > longest_tape)
         return std::nullopt;
-    const Slopes slopes = slopes_over(evaluator, tape, boxes, {lo, hi});
-    return linear_in(slopes, evaluator, lo, hi);
+    const Slopes slopes = slopes_over(evaluator, tape, boxes, {lo, hi, along});
+    const std::optional<Linear> linear = linear_in(slopes, evaluator, lo, hi);
+    if (!linear) return std::nullopt;
+    const Interval rise = slopes.at(result.address).slope[3];
+    return Rising{*linear, rise.lo - 1e-9 * size(rise)};
 }
 
 namespace {

@@ -37,6 +37,15 @@ std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, c
 std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &tape,
                                   cpu::Boxes &boxes, const Point &lo, const Point &hi);
 
+// The same, and how fast the field rises along a direction at least, all over the box.
+struct Rising {
+    Linear linear;
+    double least = 0;
+};
+std::optional<Rising> rising_over(Evaluator &evaluator, const cpu::ShortTape &tape,
+                                  cpu::Boxes &boxes, const Point &lo, const Point &hi,
+                                  const std::array<double, 3> &along);
+
 // What the surface in a box is part of. Not known where the field's bound is not proved: it may jump.
 struct Border {
     Zeros zeros;                  // of the field

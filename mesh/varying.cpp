@@ -238,6 +238,10 @@ double share_in_chamfer(double x) { return x >= 1 ? 0 : x <= -1 ? 1 : 0.5; }
 // are a mean of those of a and b. Not known where the radius changes.
 Varying blended(const Varying &a, const Varying &b, const Varying &r, ShareOfOther share) {
     constexpr double rounding = 1e-9, of_blends = 0x1p-20;
+    // Farther apart than the radius, in floats too, it is the lesser of both, and nothing is rounded.
+    const double apart = (1 + of_blends) * std::max(r.range.hi, 0.0);
+    if (b.range.lo - a.range.hi > apart) return a;
+    if (a.range.lo - b.range.hi > apart) return b;
     Varying made;
     made.known = a.known && b.known && r.known;
     for (const Interval &slope : r.slope) made.known = made.known && size(slope) == 0;

@@ -52,6 +52,20 @@ TEST_CASE("pieces and handles of plain solids are proved") {
     }
 }
 
+TEST_CASE("pieces of long blends are proved: of most operands nothing is near") {
+    const mesh::Mended mended = mended_of(R"(
+smooth_union(0.02) {
+  for i in 0..100 {
+    let y = 1 - (2 * i + 1) / 100
+    let ring = sqrt(1 - y * y)
+    sphere(0.12).translate([ring * cos(2.4 * i), y, ring * sin(2.4 * i)])
+  }
+})",
+                                          64);
+    CHECK(mended.certificate.shape_proved);
+    CHECK(mended.certificate.components == 100);
+}
+
 TEST_CASE("what is certified is in the right pieces, where walls and gaps are thinner than cells") {
     for (const auto &[text, resolution, pieces, genus] :
          {Known{"torus(1, 0.02)", 48, 1, 1}, Known{"torus(1, 0.005)", 96, 1, 1},
