@@ -20,6 +20,7 @@ constexpr double shows_walls = 1.8;   // cells across a wall that is seen whole 
 constexpr double kept_off = 1.0 / 64; // of a wall's thickness: where moved vertices end before it
 constexpr std::size_t few_cells = 64; // with thin walls: they are mended by themselves,
 constexpr std::size_t few_share = 32; // … as where so many times more are crossed
+constexpr double most_crossing = 1.0 / 8;   // of triangles: else moved vertices are hardly a mesh
 constexpr double most_nodes_of_wider = 8e6; // of an octree of smaller cells, about
 
 // Where the field changes its sign near vertices that were moved, as the roots of a mesh.
@@ -100,9 +101,9 @@ void find_edges(const Field &field, const Made &drawn, float level, float sign, 
 }
 
 // Moves vertices as far as triangles keep areas and do not cross. `from`: where none cross. `all`: it
-// fails where one cannot be moved at all.
-bool move_apart(Mesh &mesh, const std::vector<Point> &from, bool all, unsigned threads,
-                Progress &progress) {
+// fails where one cannot be moved at all. `tangled`: it fails since too many cross.
+bool move_apart(Mesh &mesh, const std::vector<Point> &from, bool all, bool &tangled,
+                unsigned threads, Progress &progress) {
     constexpr std::array<double, 5> shares{1, 0.98, 0.85, 0.5, 0};
     const std::vector<Point> to = mesh.vertices;
     std::vector<std::uint8_t> back(from.size(), 0);
@@ -120,6 +121,8 @@ bool move_apart(Mesh &mesh, const std::vector<Point> &from, bool all, unsigned t
                 bad.push_back(s), bad.push_back(t);
         if (progress.cancelled) return false;
         if (bad.empty()) return true;
+        tangled = bad.size() > most_crossing * static_cast<double>(mesh.triangles.size());
+        if (tangled) return false;
         std::vector<std::uint8_t> moves(from.size(), 0);
         bool some = false;
         for (const std::uint32_t t : bad)
@@ -198,7 +201,7 @@ Made draw_solid(const ir::Scene &scene, const Settings &settings, const WiderSol
 // The same octree with another mesh, that of a drawn solid. None: there is none, or it was cancelled.
 std::optional<Made> moved_to_surface(const Field &field, const Settings &settings, const Made &made,
                                      const ThinWalls &walls, const WiderSolid &solid, Made drawn,
-                                     Progress &progress) {
+                                     bool &tangled, Progress &progress) {
     const Lattice &lattice = made.octree.lattice;
     const float sign = walls.gaps ? -1.0f : 1.0f;
     const auto level = static_cast<float>(kept_off * walls.thickness);
@@ -209,7 +212,7 @@ std::optional<Made> moved_to_surface(const Field &field, const Settings &setting
     std::swap(at, drawn.mesh.vertices);
     // Else nothing would be proved there.
     const bool all = std::fabs(solid.by) > 0.5 * lattice.side(lattice.level);
-    if (progress.cancelled || !move_apart(drawn.mesh, at, all, threads, progress))
+    if (progress.cancelled || !move_apart(drawn.mesh, at, all, tangled, threads, progress))
         return std::nullopt;
     Made result = made;
     result.failure = Failure::None;
@@ -324,9 +327,11 @@ std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
         const std::optional<Shown> before = std::exchange(coarser, Shown{here});
         if (!here) continue;
         progress.phase(from + 0.35 * (to - from));
-        std::optional<Made> wide =
-            moved_to_surface(field, settings, made, walls, solid, std::move(drawn), progress);
+        bool tangled = false;
+        std::optional<Made> wide = moved_to_surface(field, settings, made, walls, solid,
+                                                    std::move(drawn), tangled, progress);
         if (progress.cancelled) break;
+        if (tangled && !certified) break; // smaller cells would take long in vain
         if (!wide) continue;
         progress.phase(to);
         Wider wider{std::move(*wide), {}};
