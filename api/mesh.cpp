@@ -74,10 +74,10 @@ MeshCertificate certificate_of(const fathom::mesh::Certificate &found) {
     made.unproved_places = found.unproved.size();
     made.components = found.components;
     made.genus = found.genus;
-    made.shape_proved = found.shape_proved;
-    made.shape_open = found.shape_open;
-    made.shape_place = found.shape_place;
-    made.shape_doubted = found.shape_doubted;
+    made.shape_proved = found.shape.proved;
+    made.shape_open = found.shape.open;
+    made.shape_place = found.shape.place;
+    made.shape_doubted = found.shape.doubted;
     made.least_volume = found.least_volume;
     made.largest_volume = found.largest_volume;
     made.least_area = found.area.lo;
@@ -324,11 +324,7 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
                     const fathom::mesh::Certificate before = std::move(certificate);
                     certificate = certify(ir_of(scene), settings, made, progress);
                     // It has the pieces and handles that it had.
-                    certificate.shape_proved = before.shape_proved;
-                    certificate.shape_open = before.shape_open;
-                    certificate.shape_place = before.shape_place;
-                    certificate.shape_doubted = before.shape_doubted;
-                    certificate.finer = before.finer;
+                    certificate.shape = before.shape;
                     if (progress.cancelled) made.failure = fathom::mesh::Failure::Cancelled;
                     if (progress.cancelled) return refused(made, ir_of(scene), settings);
                 }
@@ -352,9 +348,9 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
             list_undecided(made.octree, undecided, mesh);
             if (!undecided.empty())
                 mesh.message = advice_of(ir_of(scene), settings, made, undecided);
-            else if (certificate.finer)
-                mesh.message = advice_on_shape(made, *certificate.finer);
-            else if (!options.certify || !certificate.shape_proved)
+            else if (certificate.shape.finer)
+                mesh.message = advice_on_shape(made, *certificate.shape.finer);
+            else if (!options.certify || !certificate.shape.proved)
                 mesh.message = advice_on_drawn(ir_of(scene), settings, made);
             mesh.vertices = std::move(made.mesh.vertices);
             mesh.normals = std::move(made.mesh.normals);

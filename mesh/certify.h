@@ -22,6 +22,16 @@ struct Form {
     long genus = 0;
     bool operator==(const Form &) const = default;
 };
+// Whether a mesh has the pieces and handles of the solid.
+struct ShapeAnswer {
+    bool proved = false;
+    std::size_t open = 0;    // leaves; 0 where it was not looked for
+    Real3 place{};           // one of them
+    std::vector<Cell> cells; // of these leaves those that smaller ones may tell of
+    // Samples see walls, gaps or edges that cells are too large for: it may have others.
+    bool doubted = false;
+    std::optional<Form> finer; // … or cells of half the side show others
+};
 struct Certificate {
     // Every point of the mesh has surface as near as this, and every point of the surface in the
     // cells that are not undecided has mesh as near as that. At most the side of a drawing cell.
@@ -44,21 +54,12 @@ struct Certificate {
     Real3 open_place{};
     bool looked_for_area = true; // for its upper end; else that would take too much
     double mesh_volume = 0, mesh_area = 0;
-    // By `prove_shape`: pieces and handles are those of the solid's surface. Else that is open in so many
-    // leaves, one of them about there; in none where it was not looked for.
-    bool shape_proved = false;
-    std::size_t shape_open = 0;
-    Real3 shape_place{};
-    std::vector<Cell> shape_cells; // of these leaves those that smaller ones may tell of
-    // Samples see walls, gaps or edges that cells are too large for: the mesh may have other pieces and
-    // handles than the solid.
-    bool shape_doubted = false;
-    std::optional<Form> finer; // … or cells of half the side show others
+    ShapeAnswer shape; // by `prove_shape`
     // Whether the proofs used the proved bound, besides intervals.
     bool used_bound = false;
     std::size_t divisions = 0; // of boxes, that this took: counted work
     bool near() const { return undecided.empty() && unproved.empty(); } // both distances hold
-    bool certified() const { return near() && !shape_doubted; }
+    bool certified() const { return near() && !shape.doubted; }
 };
 
 // The volume of what is undecided, in cells of the finest level.

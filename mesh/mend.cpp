@@ -306,9 +306,9 @@ void divide_for_shape(const Field &field, const Settings &settings, std::size_t 
     constexpr int most_rounds = 10;
     for (int round = 0; round < most_rounds && !progress.cancelled; ++round) {
         const Lattice &lattice = mended.made.octree.lattice;
-        std::vector<Cell> cells = mended.certificate.shape_cells;
+        std::vector<Cell> cells = mended.certificate.shape.cells;
         std::erase_if(cells, [&](const Cell &cell) { return cell.level >= lattice.depth; });
-        if (cells.empty() || mended.certificate.shape_open > few_open_leaves) return;
+        if (cells.empty() || mended.certificate.shape.open > few_open_leaves) return;
         Mended next = mended;
         if (!divide_again(field, settings, std::move(cells), most, next, progress) ||
             !next.certificate.near())
@@ -350,17 +350,17 @@ void settle_shape(const ir::Scene &scene, const Field &field, const Settings &se
     Certificate &certificate = mended.certificate;
     prove_shape(field, settings, mended.made, progress, certificate);
     divide_for_shape(field, settings, most, mended, progress);
-    if (certificate.shape_proved || progress.cancelled) return;
+    if (certificate.shape.proved || progress.cancelled) return;
     const TooThin thin = too_thin_in(field, settings, mended.made);
     if (thin.sort == TooThin::Sort::None) {
         bool same = true;
         const Form form{certificate.components, certificate.genus};
         const std::optional<Form> finer = finer_form(scene, settings, mended.made, form, same);
-        certificate.shape_doubted = !same;
-        if (!same) certificate.finer = finer;
+        certificate.shape.doubted = !same;
+        if (!same) certificate.shape.finer = finer;
         return;
     }
-    certificate.shape_doubted = true;
+    certificate.shape.doubted = true;
     // What is shrunk to show gaps may come apart, and no sample would see that.
     constexpr std::size_t large = 300'000; // nodes: several meshes more would take too long
     // Where pieces are far thinner than cells they are sharp edges rather than walls.
@@ -436,7 +436,7 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
         take_wide();
     if (!progress.cancelled)
         settle_shape(scene, field, settings, wide.has_value(), most, mended, progress);
-    if (mended.certificate.shape_doubted && wide && wide->certificate.near()) take_wide();
+    if (mended.certificate.shape.doubted && wide && wide->certificate.near()) take_wide();
     if (progress.cancelled) mended.made.failure = Failure::Cancelled;
     return mended;
 }

@@ -368,9 +368,9 @@ std::vector<std::vector<Cell>> leaves_by_task(const Made &made, const Certificat
 
 void prove_shape(const Field &field, const Settings &settings, const Made &made, Progress &progress,
                  Certificate &certificate, double work) {
-    certificate.shape_proved = false;
-    certificate.shape_open = 0;
-    certificate.shape_cells.clear();
+    certificate.shape.proved = false;
+    certificate.shape.open = 0;
+    certificate.shape.cells.clear();
     if (made.simplified > 0 || made.widened != 0) return;
     const Lattice &lattice = made.octree.lattice;
     const std::vector<std::vector<Cell>> tasks = leaves_by_task(made, certificate);
@@ -423,12 +423,12 @@ void prove_shape(const Field &field, const Settings &settings, const Made &made,
     progress.from = from, progress.to = to;
     bool placed = false;
     for (const ShapeFound &of : found) {
-        if (!placed && of.looked && of.open > 0) certificate.shape_place = of.place, placed = true;
-        certificate.shape_open += of.open;
-        certificate.shape_cells.insert(certificate.shape_cells.end(), of.cells.begin(),
+        if (!placed && of.looked && of.open > 0) certificate.shape.place = of.place, placed = true;
+        certificate.shape.open += of.open;
+        certificate.shape.cells.insert(certificate.shape.cells.end(), of.cells.begin(),
                                        of.cells.end());
     }
-    certificate.shape_proved = certificate.shape_open == 0 && !progress.cancelled;
+    certificate.shape.proved = certificate.shape.open == 0 && !progress.cancelled;
 }
 
 } // namespace fathom::mesh

@@ -347,7 +347,7 @@ std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
                 same = form(next->second) == here;
             }
             if (progress.cancelled) break;
-            wider.certificate.shape_doubted =
+            wider.certificate.shape.doubted =
                 !same || may_close(field, made, walls, 2 * std::fabs(solid.by),
                                    threads_of(settings), progress);
         }

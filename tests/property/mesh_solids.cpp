@@ -36,13 +36,13 @@ TEST_CASE("meshes of solids with flush faces and thin walls are what their certi
         const mesh::Certificate &certificate = mended.certificate;
         near += certificate.near();
         certified += certificate.certified();
-        if (certificate.shape_proved) { // so is that of smaller cells, if it is proved
+        if (certificate.shape.proved) { // so is that of smaller cells, if it is proved
             ++proved;
             mesh::Settings finer = settings;
             finer.resolution *= 2;
             const mesh::Certificate other = make_certified_mesh(c.scene, finer).certificate;
-            CHECK((!other.shape_proved || other.components == certificate.components));
-            CHECK((!other.shape_proved || other.genus == certificate.genus));
+            CHECK((!other.shape.proved || other.components == certificate.components));
+            CHECK((!other.shape.proved || other.genus == certificate.genus));
         }
         undecided += certificate.undecided.size();
         for (const mesh::Cell &cell : open_leaves(mended.made.octree))

@@ -46,7 +46,7 @@ TEST_CASE("pieces and handles of plain solids are proved") {
         INFO(text);
         const mesh::Mended mended = mended_of(text, resolution);
         CHECK(mended.certificate.certified());
-        CHECK(mended.certificate.shape_proved);
+        CHECK(mended.certificate.shape.proved);
         CHECK(mended.certificate.components == pieces);
         CHECK(mended.certificate.genus == genus);
     }
@@ -62,7 +62,7 @@ smooth_union(0.02) {
   }
 })",
                                           64);
-    CHECK(mended.certificate.shape_proved);
+    CHECK(mended.certificate.shape.proved);
     CHECK(mended.certificate.components == 100);
 }
 
@@ -84,8 +84,8 @@ TEST_CASE("what is certified is in the right pieces, where walls and gaps are th
             test::survey(mended.made.mesh.vertices, mended.made.mesh.triangles);
         CHECK(found.closed());
         if (!mended.certificate.certified()) {
-            CHECK(mended.certificate.shape_doubted);
-            CHECK_FALSE(mended.certificate.shape_proved);
+            CHECK(mended.certificate.shape.doubted);
+            CHECK_FALSE(mended.certificate.shape.proved);
             continue;
         }
         CHECK(mended.certificate.components == pieces);
@@ -118,7 +118,7 @@ TEST_CASE("two balls that all but touch are never proved to be in the wrong numb
         const mesh::Mended mended =
             mended_of(text, 12 + k % 7 * 4, 1 + static_cast<unsigned>(k) % 3);
         const std::size_t pieces = gap > 0 ? 2 : 1;
-        if (mended.certificate.shape_proved) {
+        if (mended.certificate.shape.proved) {
             ++proved;
             CHECK(mended.certificate.components == pieces);
             CHECK(mended.certificate.genus == 0);
@@ -142,9 +142,9 @@ TEST_CASE("a mesh that joins what is apart is not proved to have the solid's sha
     mesh::Progress progress;
     mesh::Certificate certificate;
     prove_shape(mesh::Field(scene, 0, {}), settings, made, progress, certificate);
-    CHECK_FALSE(certificate.shape_proved);
-    CHECK(certificate.shape_open > 0);
-    CHECK_FALSE(certificate.shape_cells.empty());
+    CHECK_FALSE(certificate.shape.proved);
+    CHECK(certificate.shape.open > 0);
+    CHECK_FALSE(certificate.shape.cells.empty());
     const mesh::Mended mended = make_certified_mesh(scene, settings);
     CHECK((mended.certificate.components == 2 || !mended.certificate.certified()));
 }
