@@ -11,7 +11,7 @@ namespace {
 
 constexpr int halvings_of_leaf = 2; // of a leaf
 constexpr int most_joined = 2;      // levels above the drawing level that are looked at first
-constexpr std::size_t tasks_at_once = 16;
+constexpr std::size_t tasks_at_once = 8;
 constexpr int most_failed = 8;         // boxes above leaves; more of that size are not looked at
 constexpr std::size_t hopeless = 16;   // leaves of a task of which no slopes are known, or
 constexpr std::size_t too_many = 64;   // … in which it is open: no more looks
