@@ -196,7 +196,7 @@ TEST_CASE("--simplify writes fewer triangles, and the certificate is of these") 
         const Result made =
             shell(folder, std::string("fathom mesh part.sdf -o a.stl --simplify ") + wrong);
         CHECK(made.exit == 2);
-        CHECK(contains(made.err, "wants a number above 0"));
+        CHECK(contains(made.err, "wants a length above 0"));
     }
     // A tolerance of many cells takes no longer to certify than one of few.
     folder.write("ball.sdf", "sphere(1)\n");
