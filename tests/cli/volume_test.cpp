@@ -97,7 +97,7 @@ TEST_CASE("a level set of OpenVDB comes back as the solid that it was made of") 
         differ += std::abs(a->rgba[k] - b->rgba[k]) > 0.1f;
         drawn += std::abs(a->rgba[k] - a->rgba[0]) > 0.1f;
     }
-    CHECK(drawn > 500); // of 6,912
+    CHECK(drawn > 500);  // of 6,912
     CHECK(differ < 600); // a pixel along the outlines
 
     const auto refused = [&](const std::string &scene, const std::string &words) {

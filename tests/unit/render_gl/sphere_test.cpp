@@ -62,6 +62,9 @@ TEST_CASE("a sphere's silhouette and depth stand where geometry puts them") {
     require_context();
     for (bool orthographic : {false, true}) {
         Scene scene = sphere();
+        scene.camera.given = true;
+        scene.camera.at = scene.graph.vec3(2.4, 1.6, 4);
+        scene.camera.look_at = scene.graph.vec3(0, 0, 0);
         scene.camera.orthographic = orthographic;
         const std::vector<float> numbers = drawn(scene, gl::Mode::Numbers);
         const View view = view_of(scene, 0, aspect());
