@@ -122,11 +122,11 @@ std::pair<glm::dvec3, double> sphere_of(const Box &box) {
     return {middle, radius > 0 ? radius : 1};
 }
 
-// Without a camera: what part of the picture the solid fills, at most, of a wider one than the last of
-// `widths` what is in its middle; and the slopes of the planes through the viewer that it touches then,
-// at the right and the left of pictures that are that many times as wide as high. A solid's reach
-// along `side - slope*forward` is a convex function of the slope, so between two of them it is at most
-// what the chord has.
+// Without a camera the solid fills this part of the picture's height or of its width; of a picture that
+// is wider than 4:3, of the middle that is 4:3. The planes through the viewer that it touches then lean
+// by `square_slope` above and below, and by that times width/height at the sides. How far a solid
+// reaches along `side - slope*forward` is a convex function of the slope: between two of `widths` it
+// is at most what the chord has.
 constexpr double filled = 0.9;
 const double square_slope = filled * std::tan(default_fov / 2);
 constexpr std::array<double, 3> widths{0, 1, 4.0 / 3};
