@@ -62,9 +62,8 @@ void Machine::step(const Instruction &instruction) {
 }
 
 // An argument that single precision may not hold, or of a length whose square it may not, is infinity
-// there. What keeps the greater part of
-// it, or says the same of all that is so large, may have it; of anything else the value is another
-// (log), or none (infinity/infinity).
+// there. What keeps the greater part of it, or says the same of all that is so large, may have it; of
+// anything else the value is another (log), or none (infinity/infinity).
 bool Step::overflows() const {
     const double most = squares_arguments(in) ? ir::rounding::max_squared : max_single;
     const auto large = [&](int arg) {

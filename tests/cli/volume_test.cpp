@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -93,10 +95,22 @@ TEST_CASE("a level set of OpenVDB comes back as the solid that it was made of") 
     const auto b = fathom::test::decoded_image(folder.read("back.png"), error);
     REQUIRE((a && b && a->rgba.size() == b->rgba.size()));
     std::size_t differ = 0, drawn = 0;
+    // The first and last columns and rows that hold some of it.
+    std::array<std::array<std::size_t, 4>, 2> sides{{{96, 0, 72, 0}, {96, 0, 72, 0}}};
     for (std::size_t k = 0; k < a->rgba.size(); k += 4) {
         differ += std::abs(a->rgba[k] - b->rgba[k]) > 0.1f;
         drawn += std::abs(a->rgba[k] - a->rgba[0]) > 0.1f;
+        const std::size_t x = k / 4 % 96, y = k / 4 / 96;
+        for (std::size_t which : {0u, 1u}) {
+            const std::vector<float> &rgba = which == 0 ? a->rgba : b->rgba;
+            if (!(std::abs(rgba[k] - rgba[0]) > 0.1f)) continue;
+            auto &[left, right, top, bottom] = sides[which];
+            left = std::min(left, x), right = std::max(right, x);
+            top = std::min(top, y), bottom = std::max(bottom, y);
+        }
     }
+    for (std::size_t side = 0; side < 4; ++side)
+        CHECK(double(sides[0][side]) == Approx(double(sides[1][side])).margin(2));
     CHECK(drawn > 500);  // of 6,912
     CHECK(differ < 600); // a pixel along the outlines
 
