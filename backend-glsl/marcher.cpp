@@ -107,6 +107,7 @@ Values values_of(const MarcherOptions &options) {
         {"PROBE", float_literal(shading::probe)},
         {"PROBE_DEPTH", float_literal(shading::probe_depth)},
         {"LIFT", float_literal(shading::lift)},
+        {"KINKED", float_literal(shading::kinked)},
         {"BEHIND", float_literal(shading::behind)},
         {"ACROSS", float_literal(shading::across)},
         {"DEEP", fmt::to_string(shading::deep)},

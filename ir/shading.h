@@ -32,6 +32,9 @@
 //   that is halved; r_a is how much further it is to than at the ray itself, over `beside` arms, a mean
 //   of to and (negated) fro where both are found, and normal = a*r_a + b*r_b - dir, normalised. Where
 //   r_a or r_b is not found it is the gradient's.
+//   A field may be steeper inside the solid than outside, or less steep. Where slopes differ, a tap is
+//   below 0, and slope^2 - |gradient|^2 is above kinked*slope^2 (TRUE DISTANCE), both are taken anew,
+//   lift*h further out along the normal, so that no tap is inside.
 //
 // TRUE DISTANCE (semantics.md, 10), which knows of no bound
 //   near(p, h) = g(p) where the slope of g is 1 almost everywhere (`Frame::unit_slope`),
@@ -154,7 +157,8 @@
 //   are 0, if the sine between them is at least sqrt(descent_apart). So the sharp edge of a cut is
 //   reached in a few steps. Where not all slopes are 1 (`Frame::unit_slope`): a step is at most
 //   descent_reach times what counts: where a field is flat far off (a Gaussian's, `atan`), g/slope
-//   leads past the solid. From the descent_plain-th step on, where d is r = descent_slow times the
+//   leads past the solid. Where the field is above 0 at both ends of a step, rises along it at the
+//   second, and is steeper there, it led past something thin: half of it is taken. From the descent_plain-th step on, where d is r = descent_slow times the
 //   one before or more, on the same side, it is divided by 1 - r, at least descent_fastest, as
 //   roots of a higher order want (Aitken). Where the field had the other sign at one of the places
 //   before, the last such, and d is longer than descent_across of the way there, d is where the
@@ -259,6 +263,7 @@ inline constexpr float arm = 0.125f;  // tolerances
 inline constexpr float lift = 2;      // arms
 inline constexpr float widest = 0.2f; // pixels
 inline constexpr float min_slope = 1.0f / 1024;
+inline constexpr float kinked = 1.0f / 256; // of the slope's square
 inline constexpr float faint = 1.0f / 32;
 inline constexpr float beside = 4, beside_reach = 32; // arms; and times that
 inline constexpr int beside_looks = 16;               // at both ends, and halvings

@@ -25,6 +25,7 @@ struct Descent {
     float stride = 0; // the last step's length,
     Vec last{0};      // where it began,
     float before = 0; // and the field there
+    float was = 0;    // and its slope
     Vec other{0};     // the last place where the field had the other sign,
     float beyond = 0; // and its value there; 0: none
     int steps = 0;
@@ -177,8 +178,8 @@ class Searches {
         way.p = way.p + by;
     }
 
-    // What DOWN makes of a step: not too far, faster where steps hardly shorten, and between two places
-    // of which one is in the solid.
+    // What DOWN makes of a step: not too far, half the step before where that led past something,
+    // faster where steps hardly shorten, and between two places of which one is in the solid.
     Vec kept_near(Descent &way, Vec by, bool first) const {
         const Near &place = places_[way.of];
         const bool point = !(place.angle > 0);
@@ -187,10 +188,15 @@ class Searches {
         if (first) way.stride = way.before = way.beyond = 0;
         if (way.before * way.g < 0) way.other = way.last, way.beyond = way.before;
         const float ratio = way.before * way.g > 0 ? size / way.stride : 0;
-        way.last = way.p, way.before = way.g, way.stride = size;
+        const Vec came = way.p - way.last;
+        const bool past =
+            !first && way.g > 0 && way.before > 0 && way.slope > way.was && dot(way.v, came) > 0;
         const bool far = most > 0 && size > most;
         if (far) by *= most / size;
-        if (!far && way.steps > shading::descent_plain && ratio > shading::descent_slow &&
+        if (past) by = -0.5f * came;
+        way.stride = past ? 0.5f * length(came) : size;
+        if (!past) way.last = way.p, way.before = way.g, way.was = way.slope;
+        if (!far && !past && way.steps > shading::descent_plain && ratio > shading::descent_slow &&
             ratio < 1)
             by /= std::max(1 - ratio, shading::descent_fastest);
         const Vec across = way.other - way.p;

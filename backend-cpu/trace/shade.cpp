@@ -102,6 +102,35 @@ void look_beside(Worker &worker, std::span<const RayState> rays, Points &at,
     }
 }
 
+// The gradients and slopes anew, from farther in front of the surface, where their taps lay on both
+// sides of a kink in the field (ir/shading.h, GRADIENT).
+void take_in_front(Worker &worker, Points &at, std::vector<Vec> above, std::vector<Vec> &gradient) {
+    const std::size_t count = at.size();
+    std::vector<std::size_t> which;
+    for (std::size_t k = 0; k < count; ++k) {
+        bool behind = false;
+        for (std::size_t i = 0; i < 4; ++i) behind |= worker.tap_values[i * count + k] < 0;
+        const float square = at.slope[k] * at.slope[k];
+        if (behind && square - dot(gradient[k], gradient[k]) > shading::kinked * square)
+            which.push_back(k);
+    }
+    if (which.empty()) return;
+    std::vector<Vec> place(which.size()), found(which.size());
+    std::vector<float> g(which.size()), h(which.size()), slope(which.size());
+    for (std::size_t i = 0; i < which.size(); ++i) {
+        const std::size_t k = which[i];
+        const float size = length(gradient[k]);
+        h[i] = at.h[k];
+        place[i] = above[k];
+        if (size > 0) place[i] += shading::lift * h[i] / size * gradient[k];
+        worker.points.set(0, i, place[i]);
+    }
+    shaded_values(worker, worker.points, g.data(), which.size());
+    slopes(worker, place.data(), g.data(), h.data(), found.data(), slope.data(), which.size());
+    for (std::size_t i = 0; i < which.size(); ++i)
+        gradient[which[i]] = found[i], at.slope[which[i]] = slope[i];
+}
+
 void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
     std::vector<Vec> gradient(at.size()), above(at.size());
     for (std::size_t k = 0; k < at.size(); ++k)
@@ -116,6 +145,7 @@ void find_normals(Worker &worker, std::span<const RayState> rays, Points &at) {
         shaded_values(worker, worker.points, g.data(), at.size());
         slopes(worker, above.data(), g.data(), at.h.data(), gradient.data(), at.slope.data(),
                at.size());
+        take_in_front(worker, at, std::move(above), gradient);
     }
     for (std::size_t k = 0; k < at.size(); ++k) {
         const float size = length(gradient[k]);

@@ -20,7 +20,8 @@ float fathom_nearest(vec3 from, vec3 l, vec3 p, float g, float first, float last
     vec3 around = arm * fathom_corner(0);
 $if !UNIT_SLOPE
     vec3 last_p = p, other = p; // where the last step began; and where the field had the other sign,
-    float g_last = 0.0, stride = 0.0, beyond = 0.0; // the field there, the step's length, and the field here; 0: none
+    float g_last = 0.0, slope_last = 0.0, stride = 0.0; // the field there, its slope, and the step's length,
+    float beyond = 0.0;                                 // and the field here; 0: none
 $end
     int steps = 0, slides = 0, tap = 0; // of a gradient, -1: the field itself
     bool returned = false;
@@ -77,13 +78,19 @@ $if !UNIT_SLOPE
                     other = last_p;
                     beyond = g_last;
                 }
+                vec3 came = p - last_p;
+                bool past = steps > 0 && g > 0.0 && g_last > 0.0 && slope > slope_last && dot(sum, came) > 0.0;
                 float ratio = g_last * g > 0.0 ? size / stride : 0.0;
-                last_p = p;
-                g_last = g;
-                stride = size;
                 bool far = most > 0.0 && size > most;
                 if (far) by *= most / size;
-                if (!far && steps >= $DESCENT_PLAIN && ratio > $DESCENT_SLOW && ratio < 1.0)
+                if (past) by = -0.5 * came;
+                stride = past ? 0.5 * length(came) : size;
+                if (!past) {
+                    last_p = p;
+                    g_last = g;
+                    slope_last = slope;
+                }
+                if (!far && !past && steps >= $DESCENT_PLAIN && ratio > $DESCENT_SLOW && ratio < 1.0)
                     by /= max(1.0 - ratio, $DESCENT_FASTEST);
                 if (beyond * g < 0.0 && length(by) > $DESCENT_ACROSS * length(other - p))
                     by = clamp(g / (g - beyond), $DESCENT_LEAST, 1.0 - $DESCENT_LEAST) * (other - p);

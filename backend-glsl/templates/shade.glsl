@@ -11,6 +11,7 @@ $# even: less than 1 at an edge.
     float slope = 0.0, even = 1.0;
 $if MANY_SLOPES
     float bent = 0.0, own = 1.0; // what rises as the surface itself does is open
+    bool behind = false, lifted = false; // the taps: in the solid; further in front of it
 $# Of the surface beside the point: how far along the ray it is looked at, in BESIDE_ARMS.
     float low = 0.0, high = 0.0, here = -$BESIDE_REACH, middle = 0.0;
     bool found = false;

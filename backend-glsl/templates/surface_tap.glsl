@@ -2,6 +2,7 @@ $# What f at the point i about a surface adds to the gradient; after the last, t
             g += f * e;
 $if MANY_SLOPES
             bent += i < 4 ? f : -4.0 * f;
+            behind = behind || f < 0.0;
 $end
             if (i == $SURFACE_TAPS - 1) {
                 g *= 0.75 / h;
@@ -10,7 +11,15 @@ $end
 $if MANY_SLOPES
                 own = max(sqrt(slope * slope + $CREASE * 0.0625 * bent * bent / (h * h)), $MIN_SLOPE);
                 even = clamp(slope / (own * $FLAT_FROM), $MIN_SLOPE, 1.0);
-                if (slope < $FAINT) surface += 5 * $BESIDE_LOOKS;
+                bool kinked = !lifted && behind && own * own - slope * slope > $KINKED * own * own;
+                if (kinked) { // once more, from further in front
+                    lifted = true;
+                    if (slope > 0.0) above += $LIFT * h * n;
+                    g = vec3(0.0);
+                    bent = 0.0;
+                    i = -1;
+                }
+                if (slope < $FAINT && !kinked) surface += 5 * $BESIDE_LOOKS;
 $else
                 even = clamp(slope / $FLAT_FROM, $MIN_SLOPE, 1.0);
 $end

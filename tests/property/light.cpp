@@ -52,6 +52,35 @@ TEST_CASE("two texts of one solid give one picture") {
     }
 }
 
+TEST_CASE("a field with a kink on its surface is lit as that lies") {
+    const std::string scene = camera + "lighting(ambient_occlusion: 0)\nlight([3, 5, 3])\n";
+    const cpu::Picture exact = drawn(scene + "torus(1, 0.4)\n");
+    for (const char *kinked : {"if d < 0 { 8 * d } else { d }", "if d < 0 { 0.1 * d } else { d }",
+                               "max(d, 3 * d)", "d + 0.6 * abs(d)"}) {
+        INFO(kinked);
+        CHECK(different(exact,
+                        drawn(scene + "implicit(p => { let d = length([length(p.xz) - 1, p.y]) - " +
+                              "0.4; " + kinked + " }, within: ball(3))\n")) <= few);
+    }
+}
+
+TEST_CASE("what is thin and flat far off has a soft shadow without cracks") {
+    // An open bowl in a room. Its field is a distance near it, and flat where its shadows end.
+    const std::string scene = "camera(at: [2.6, 1.6, 2.9], look_at: [0, -0.1, 0], fov: 60deg)\n"
+                              "lighting(soft_shadows: 0.1)\nlight([2, 3, 1])\n"
+                              "box(8).shell(0.1)\n"
+                              "fn bowl(p) = max(abs(length(p) - 1) - 0.05, p.y - 0.4)\n";
+    const auto with = [&](const std::string &far_off) {
+        return drawn(scene + "implicit(p => { let d = bowl(p); " + far_off +
+                     " }, within: ball(4))\n");
+    };
+    const cpu::Picture even = with("d");
+    for (const char *flat : {"d / sqrt(1 + 9 * d * d)", "1 - exp(-2 * d)", "atan(3 * d)"}) {
+        INFO(flat);
+        CHECK(different(even, with(flat)) <= 3 * few);
+    }
+}
+
 TEST_CASE("what closes a place is as near as the solid is, not as a field says") {
     const std::string scene =
         camera + "lighting(occlusion_reach: 0.4, soft_shadows: 0)\nplane(Y, -0.7)\n";

@@ -70,6 +70,7 @@ constexpr const char *numbers[] = {"FAR",
                                    "OCCLUSION_FINE",
                                    "BEHIND",
                                    "LIFT",
+                                   "KINKED",
                                    "SHARE",
                                    "CLOSED_FROM",
                                    "MARKS",
@@ -299,7 +300,8 @@ Frame frame_of(std::string_view name, const Values &values) {
                     "void tap(int i, float f, vec3 e, float h) {\n    vec3 g = vec3(0.0), n = "
                     "g;\n    float slope = 0.0, bent = 0.0, own = 1.0, even = 1.0;\n"
                     "    float low = 0.0, high = 0.0, here = 0.0, middle = 0.0;\n"
-                    "    bool found = false;\n    vec2 rise = vec2(0.0), rises = vec2(0.0);\n"
+                    "    bool found = false, behind = false, lifted = false;\n"
+                    "    vec2 rise = vec2(0.0), rises = vec2(0.0);\n    vec3 above = e;\n"
                     "    int surface = 4;\n    vec3 direction = e;\n",
                 "}\n" + end};
     if (name == "probe")
