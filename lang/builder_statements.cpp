@@ -204,6 +204,11 @@ void Builder::return_value(Index first, Index last) {
 
 void Builder::plain_value() {
     const Item item = pop_item();
+    if (!in_function_ && std::holds_alternative<Binary>(ast_.exprs[item.id].kind) &&
+        equation(span(item))) {
+        add_stmt(Bad{}, span(item), 1);
+        return;
+    }
     add_stmt(ExprStmt{item.id}, span(item), height(item.id));
 }
 
@@ -238,6 +243,10 @@ void Builder::assignment() {
     const Span whole{id_, target.begin, value.end};
     const std::uint32_t tall = std::max(height(target.id), height(value.id));
     const Name *name = std::get_if<Name>(&ast_.exprs[target.id].kind);
+    if (!in_function_ && kind(at) == Tok::Assign && !names_function(target.id) && equation(whole)) {
+        add_stmt(Bad{}, whole, 1);
+        return;
+    }
     if (!in_function_ && name && kind(at) == Tok::Assign && !is_declared(name->text)) {
         if (setting_assigned(name->text, span(target), span(value))) {
             add_stmt(Bad{}, whole, 1);

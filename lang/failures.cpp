@@ -150,7 +150,8 @@ void Builder::generic_failure(Wanted wanted, Index at) {
                 d.help("to multiply, write `*`", {{{id_, end, end}, " *"}});
             else
                 d.help("a comma or a `*` is missing before it");
-        } else if (begins_operand(found) && wanted != Wanted::CloseBrace) {
+        } else if (begins_operand(found) && ends_operand(kind(at - 1)) &&
+                   wanted != Wanted::CloseBrace) {
             const std::uint32_t end = token(at - 1).end;
             d.help("a comma may be missing", {{{id_, end, end}, ","}});
         }

@@ -334,38 +334,6 @@ std::vector<Edit> part_of_shape(Interpreter &ev, const File &ast, const lang::Me
     return edits.size() > most_edits ? std::vector<Edit>{} : edits;
 }
 
-bool is_foreign_method(Interpreter &ev, const Value &object, const File &ast,
-                       const lang::Member &member, const lang::Call &call, Span place) {
-    const std::string name(member.name.text);
-    if (object.kind == ValueKind::Shape && name == "material") {
-        Diagnostic &d = report(ev, Code::UnknownMember, member.name.span,
-                               "`material` makes a material, and is no function of a shape");
-        const bool alone = call.arguments.size() == 1 && !call.arguments[0].name;
-        if (alone)
-            d.help("a shape is given a colour or a material by `.paint(…)`",
-                   {{member.name.span, "paint"}});
-        else
-            d.help("a shape is given one by `.paint(material(…))`",
-                   {{member.name.span, "paint(material"},
-                    {{place.source, place.end, place.end}, ")"}});
-        return true;
-    }
-    constexpr std::array<std::string_view, 6> theirs = {"uniform", "random",    "rand",
-                                                        "randint", "randrange", "range"};
-    const bool random = object.kind == ValueKind::Builtin &&
-                        builtins()[object.id].name == std::string_view("random");
-    if (!random || std::ranges::find(theirs, name) == theirs.end()) return false;
-    Diagnostic &d =
-        report(ev, Code::UnknownMember, member.name.span,
-               fmt::format("there is no function `{}` for {}", name, describe(ev, object)));
-    const auto end = static_cast<std::uint32_t>(place.end - 1);
-    const std::string seed = (call.arguments.empty() ? "" : ", ") + seed_text(ev, place);
-    d.help("a random number is `random(seed)`, from 0 to 1, or `random(lo, hi, seed)`",
-           {{{place.source, ast.exprs[member.object].span.end, member.name.span.end}, ""},
-            {{place.source, end, end}, seed}});
-    return true;
-}
-
 std::string names_left(std::span<const Formal> formals, std::span<const Given> given) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < formals.size(); ++i)

@@ -291,10 +291,10 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, std::string_view 
                "library's shapes stand outside of it, as `sphere(r).translate(c)`");
         return;
     }
-    if (Fix part = of_user ? part_of_point(ev, name, place) : Fix{}; !part.message.empty()) {
-        d.help(std::move(part.message), std::move(part.edits));
-        return;
-    }
+    for (Fix fix : {part_of_point(ev, name, place), constant_of_vector(ev, name, place)})
+        if (of_user && !d.fix && !fix.message.empty())
+            d.help(std::move(fix.message), std::move(fix.edits));
+    if (d.fix) return;
     for (const auto &remedy :
          {without_call(ev, name, place), name_before_value(ev, frame, name, place)})
         if (of_user && !d.fix && !remedy.message.empty()) d.help(remedy.message, remedy.edits);

@@ -62,6 +62,8 @@ void report_needless_range(Interpreter &ev, const File &ast, const lang::Param &
 bool is_vector_by_numbers(std::span<const Formal> formals, std::size_t i, std::size_t numbers);
 bool is_foreign_method(Interpreter &ev, const Value &object, const File &ast,
                        const lang::Member &member, const lang::Call &call, Span place);
+// For `Vector3.up`, `Vec3.ZERO` of engines; an empty message: it is not that.
+Fix constant_of_vector(const Interpreter &ev, std::string_view name, Span place);
 // For `l.push(x)` in a loop, `l.forEach(f)`, `l.sum()`: what does the same. Empty where that is not
 // plain.
 std::vector<Edit> edits_of_list_method(const Interpreter &ev, const File &ast,

@@ -324,6 +324,7 @@ bool ForeignSyntax::foreign_head(Index first) {
         foreign_function(first, name, has_type);
         return true;
     }
+    if (word == "uniform" && hinted_param(first, name)) return true;
     const bool value = kind(name + 1) == Tok::Assign;
     if (value && (word == "uniform" || is_one_of(word, slider_words))) {
         lost_.push_back(name);

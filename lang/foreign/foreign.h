@@ -115,6 +115,7 @@ class ForeignSyntax : protected TokenReading {
     bool call_of_row(Index open);
     bool range_of_param(Index comma);
     bool set_of_points(Index brace);
+    bool equation(Span statement);
     bool runs_on(Index name, std::uint32_t end);
     bool setting_assigned(std::string_view name, Span target, Span value);
     void settle_foreign_names();
@@ -156,6 +157,7 @@ class ForeignSyntax : protected TokenReading {
     bool foreign_head(Index first);
     Edit without_statement(Index first) const;
     void foreign_param(Index first, Index name);
+    bool hinted_param(Index first, Index name);
     bool foreign_stream(Index first, Index name);
     void foreign_unbound(Index first, Index name, std::string_view type);
     void foreign_name_parts(Index left, Index right);

@@ -1,9 +1,13 @@
-// What mathematics writes of numbers, vectors and sets: `|x| - 1`, `{(x, y, z) : x^2 < 1}`.
+// What mathematics writes of numbers, vectors and sets: `|x| - 1`, `{(x, y, z) : x^2 < 1}`,
+// `x^2 + y^2 + z^2 = 1`.
 #include "lang/foreign/foreign.h"
 
+#include <algorithm>
 #include <array>
 
 namespace fathom::lang {
+
+static constexpr std::array<std::string_view, 3> coordinates = {"x", "y", "z"};
 
 // `|p|`, `|p - [1, 0, 0]|`, `|p.xz|`, at the first bar: whether a vector stands there as a whole.
 bool ForeignSyntax::is_amount_of_vector(Index bar) const {
@@ -73,6 +77,63 @@ bool ForeignSyntax::set_of_points(Index brace) {
     failed_ = close;
     foreign(span(brace, sign), "a shape is no set of points, but a function that is below 0 inside")
         .help("write `implicit(p => length(p) - 1)` for all points nearer than 1");
+    return true;
+}
+
+// `x^2 + y^2 + z^2 = 1`, `z < sin(x)`, `x^2 + y^2 - 1`: a statement of coordinates that are declared nowhere.
+bool ForeignSyntax::equation(Span statement) {
+    const auto begins =
+        std::ranges::lower_bound(tokens_.tokens, statement.begin, {}, &Token::begin);
+    const auto first = static_cast<Index>(begins - tokens_.tokens.begin());
+    Index past = first, sign = 0;
+    bool reads_last = false; // coordinates: behind the sign, or where there is none
+    int depth = 0;
+    std::vector<Edit> edits;
+    for (; token(past).begin < statement.end && past < tokens_.tokens.size(); ++past) {
+        const Tok k = kind(past);
+        if (is_one_of(
+                k, {Tok::And, Tok::Or, Tok::Not, Tok::Bar, Tok::Amp, Tok::FatArrow, Tok::NotEqual}))
+            return false;
+        depth += match(past) > past ? 1 : match(past) < past ? -1 : 0;
+        if (depth == 0 && is_one_of(k, {Tok::Assign, Tok::EqualEqual, Tok::Less, Tok::LessEqual,
+                                        Tok::Greater, Tok::GreaterEqual})) {
+            if (sign > 0) return false;
+            sign = past, reads_last = false;
+        }
+        const bool coordinate = k == Tok::Name && is_one_of(text(past), coordinates) &&
+                                (past == 0 || kind(past - 1) != Tok::Dot) &&
+                                !is_one_of(kind(past + 1), {Tok::Open, Tok::Colon}) &&
+                                !may_be_declared(text(past));
+        if (!coordinate) continue;
+        reads_last = true;
+        edits.push_back({{id_, token(past).begin, token(past).begin}, "p."});
+    }
+    const bool binds = sign == first + 1 && kind(sign) == Tok::Assign; // `z = 3` declares a name
+    if (edits.empty() || (binds && !reads_last)) return false;
+    std::string head = "implicit(p => ", tail = ", within: ball(3))";
+    if (sign > 0) {
+        if (is_one_of(kind(sign), {Tok::Greater, Tok::GreaterEqual}))
+            head += "-(", tail = ")" + tail;
+        const bool zero = sign + 2 == past && text(sign + 1) == "0";
+        const bool sum = sign + 2 < past;
+        if (sum) tail = ")" + tail;
+        if (zero)
+            edits.push_back({{id_, token(sign - 1).end, statement.end}, tail});
+        else
+            edits.push_back({{id_, token(sign).begin, token(sign + 1).begin}, sum ? "- (" : "- "});
+        if (zero) tail.clear();
+    }
+    if (edits[0].span.begin == statement.begin)
+        edits[0].replacement = head + edits[0].replacement;
+    else
+        edits.push_back({{id_, statement.begin, statement.begin}, head});
+    if (!tail.empty()) edits.push_back({{id_, statement.end, statement.end}, tail});
+    std::ranges::sort(edits, {}, [](const Edit &edit) { return edit.span.begin; });
+    foreign(statement, sign > 0 ? "an equation is no shape by itself"
+                                : "a formula of coordinates is no shape by itself")
+        .help("a solid is where a function of the point is below 0, and is looked for as far as "
+              "`within` says",
+              std::move(edits));
     return true;
 }
 

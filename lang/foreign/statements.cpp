@@ -36,8 +36,9 @@ bool ForeignSyntax::mistyped_keyword(Index first) {
         is_declared(std::string(word)))
         return false;
     if (kind(first + 1) == Tok::Name) lost_.push_back(first + 1);
+    const std::string meant(word == "val" ? "let" : *near); // Kotlin's and Scala's never changes
     diagnostics_.add(Code::SyntaxError, span(first), "no statement begins with " + in_code(word))
-        .help("did you mean " + in_code(*near) + "?", {{span(first), std::string(*near)}});
+        .help("did you mean " + in_code(meant) + "?", {{span(first), meant}});
     return true;
 }
 

@@ -38,6 +38,8 @@ constexpr ForeignWord statement_words[] = {
     {"use", "the library needs no import", "a file is brought in by `import \"file.sdf\"`", true},
     {"using", "the library needs no import", "a file is brought in by `import \"file.sdf\"`", true},
     {"precision", "every number is of single precision", "leave the line away", true},
+    {"shader_type", "a scene is no shader", "leave the line away", true},
+    {"render_mode", "a scene is no shader", "leave the line away", true},
     {"global", "a function reads the names around it as they are", "leave the line away", true},
     {"nonlocal", "a function reads the names around it as they are", "leave the line away", true},
     {"del", "a name lasts as long as its block", "leave the line away", true},

@@ -39,8 +39,8 @@ TEST_CASE("precedence, loosest first") {
     CHECK(tree_of("a * -b") == "binary *(name a, unary -(name b))");
     CHECK(tree_of("-a * b") == "binary *(unary -(name a), name b)");
     CHECK(tree_of("-2^2") == "unary -(binary ^(int 2, int 2))");
-    CHECK(tree_of("2^-x^3") == "binary ^(int 2, unary -(binary ^(name x, int 3)))");
-    CHECK(tree_of("2^-x*3") == "binary *(binary ^(int 2, unary -(name x)), int 3)");
+    CHECK(tree_of("2^-a^3") == "binary ^(int 2, unary -(binary ^(name a, int 3)))");
+    CHECK(tree_of("2^-a*3") == "binary *(binary ^(int 2, unary -(name a)), int 3)");
     CHECK(tree_of("a^b^c") == "binary ^(name a, binary ^(name b, name c))");
     CHECK(tree_of("-a.b") == "unary -(member b(name a))");
     CHECK(tree_of("a^b.c") == "binary ^(name a, member c(name b))");
