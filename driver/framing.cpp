@@ -72,6 +72,52 @@ bool within(const ir::Box &box, const cpu::Extent &outer,
     return true;
 }
 
+// How deep places lie in the solid, at least, below 0 outside. Not to be asked of a scene of more than
+// `most_operations_inside` operations a point.
+class Depth {
+  public:
+    Depth(const ir::Scene &scene, double time)
+        : program_(cpu::compile(scene, scene.distance)),
+          scratch_(cpu::make_scratch(program_, cpu::inputs_of(scene, time))) {}
+    double operator()(const glm::dvec3 &place) {
+        std::array<float, 3> at;
+        for (int i = 0; i < 3; ++i) at[static_cast<std::size_t>(i)] = static_cast<float>(place[i]);
+        const float *const in[] = {&at[0], &at[1], &at[2]};
+        float distance = 0, *const out[] = {&distance};
+        cpu::evaluate(program_, scratch_, in, out, 1);
+        return -static_cast<double>(distance);
+    }
+    static bool affordable(const ir::Scene &scene) {
+        const ir::Graph &graph = scene.graph;
+        return ir::operations(graph, graph.function(scene.distance).result) <=
+               most_operations_inside;
+    }
+
+  private:
+    cpu::Program program_;
+    cpu::Scratch scratch_;
+};
+
+// What has no end is seen from near the origin; where that lies in the solid or hard by it, as among
+// hills, from as many times as far as it takes. Where it is everywhere about, as a lattice of balls, from the first
+// place outside; and where there is none, that is told (tell_of_view_inside).
+void stand_outside(ir::Scene &scene, double time) {
+    if (!Depth::affordable(scene)) return;
+    Depth depth(scene, time);
+    constexpr int most_doublings = 10;
+    constexpr double room = 0.1; // of the way to what is looked at
+    std::optional<ir::Box> outside;
+    for (int i = 0; i <= most_doublings; ++i) {
+        const double half = std::exp2(i);
+        if (i > 0) scene.framed = ir::Box{{-half, -half, -half}, {half, half, half}};
+        const ir::View view = ir::view_of(scene, time, 1);
+        const double in_front = -depth(view.origin);
+        if (in_front > room * view.focus) return;
+        if (in_front > 0 && !outside) outside = scene.framed;
+    }
+    scene.framed = outside.value_or(ir::Box{});
+}
+
 // The extent of the parts that have bounds: first that of the outermost, which mostly holds the bounds
 // of all others; then of more of those that it does not.
 cpu::Extent of_bounded(ir::Scene &scene, ir::Interval times, double &work) {
@@ -147,6 +193,7 @@ void find_framing(ir::Scene &scene, ir::Interval times, const std::optional<ir::
     if (!found.box.empty()) scene.framed_reach = std::move(found.reach);
     if (!scene.framed.empty() || work <= 0) return; // what was not found may be there
     const Span span = scene.top_level.front().span;
+    if (endless) stand_outside(scene, times.lo);
     if (endless)
         diagnostics
             .add(Code::NothingFramed, span,
@@ -164,19 +211,11 @@ void find_framing(ir::Scene &scene, ir::Interval times, const std::optional<ir::
 
 void tell_of_view_inside(const ir::Scene &scene, double time, Diagnostics &diagnostics) {
     if (scene.top_level.empty()) return;
-    const ir::Graph &graph = scene.graph;
-    if (ir::operations(graph, graph.function(scene.distance).result) > most_operations_inside)
-        return;
+    if (!Depth::affordable(scene)) return;
     const ir::View view = ir::view_of(scene, time, 1);
-    const cpu::Program program = cpu::compile(scene, scene.distance);
-    cpu::Scratch scratch = cpu::make_scratch(program, cpu::inputs_of(scene, time));
-    const auto inside = [&](glm::dvec3 place) {
-        std::array<float, 3> at;
-        for (int i = 0; i < 3; ++i) at[static_cast<std::size_t>(i)] = static_cast<float>(place[i]);
-        const float *const in[] = {&at[0], &at[1], &at[2]};
-        float distance = 0, *const out[] = {&distance};
-        cpu::evaluate(program, scratch, in, out, 1);
-        return distance < -scene.render.epsilon;
+    Depth depth(scene, time);
+    const auto inside = [&](const glm::dvec3 &place) {
+        return depth(place) > scene.render.epsilon;
     };
     const auto tell = [&](std::string_view how) -> Diagnostic & {
         return diagnostics.add(

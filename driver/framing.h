@@ -12,7 +12,7 @@ namespace fathom::driver {
 
 // Narrows Scene::framed of a lowered scene whose camera is not given to the box of what has an end, and
 // finds framed_reach, at the params' present values and over these times, in seconds. Where nothing has one, or there is
-// no solid at all, a note says so and what to write. `section`: what the scene was cut open by.
+// no solid at all, a note says so and what to write; the view of what is endless begins outside of it. `section`: what the scene was cut open by.
 void find_framing(ir::Scene &scene, ir::Interval times, const std::optional<ir::Section> &section,
                   Diagnostics &diagnostics);
 

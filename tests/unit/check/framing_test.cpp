@@ -199,6 +199,27 @@ TEST_CASE("what moves is framed at the moment of a still, and over the frames of
     CHECK(at(ball, 6, 6).lo[0] == Approx(5.5).margin(0.1));
 }
 
+TEST_CASE("what has no end is seen from outside") {
+    const auto begins = [](const std::string &text) {
+        const driver::Compilation made = framed(text);
+        CHECK(told(made));
+        return ir::view_of(made.scene, 0, 1.5).origin;
+    };
+    // Hills about a height of 3 and of 40, up to 2 higher; a lattice, outside of its balls.
+    for (const double height : {-3.0, 3.0, 40.0}) {
+        INFO(height);
+        const glm::dvec3 eye =
+            begins(fmt::format("implicit(p => 0.5 * (p.y - {} - 2 * sin(p.x) * cos(p.z)), "
+                               "within: everywhere)",
+                               height));
+        CHECK(eye.y - height > 2.5);
+    }
+    CHECK(begins("plane(Y, 0)") == begins("plane(Y, -1)"));
+    const glm::dvec3 eye = begins("sphere(1).repeat([3, 3, 3])");
+    CHECK(glm::length(eye - 3.0 * glm::round(eye / 3.0)) > 1);
+    CHECK(begins("plane(Y, 1e9)").y < 1e9); // nowhere: as near the origin as ever
+}
+
 TEST_CASE("what cannot be framed is told, and what to write") {
     for (const char *text : {"plane(Y, 0)", "plane(Y, 0) - sphere(1)", "gyroid(1, 0.1)", "slab(1)",
                              "sphere(0.2).repeat(cell: 1)", "sphere(1) & sphere(1).translate(x: 5)",
