@@ -88,6 +88,7 @@ bool ForeignSyntax::equation(Span statement) {
     Index past = first, sign = 0;
     bool reads_last = false; // coordinates: behind the sign, or where there is none
     int depth = 0;
+    constexpr std::size_t most_edits = 200;
     std::vector<Edit> edits;
     for (; token(past).begin < statement.end && past < tokens_.tokens.size(); ++past) {
         const Tok k = kind(past);
@@ -106,6 +107,7 @@ bool ForeignSyntax::equation(Span statement) {
                                 !may_be_declared(text(past));
         if (!coordinate) continue;
         reads_last = true;
+        if (edits.size() == most_edits) return false;
         edits.push_back({{id_, token(past).begin, token(past).begin}, "p."});
     }
     const bool binds = sign == first + 1 && kind(sign) == Tok::Assign; // `z = 3` declares a name
