@@ -92,6 +92,9 @@ std::string_view Builder::doc_above(Index at) {
 void Builder::let(Index first, Index) {
     Item value = pop_item();
     if (runs_on(first + 1, value.end)) value.id = add(Poison{}, span(value), 1);
+    if (!in_function_ && std::holds_alternative<Binary>(ast_.exprs[value.id].kind) &&
+        formula_bound(first, value.end))
+        value.id = add(Poison{}, span(value), 1);
     const TypeExpr *type = pop_maybe_type();
     add_stmt(Let{pop_name(), type, value.id, doc_above(first)},
              {id_, token(first).begin, value.end}, height(value.id));

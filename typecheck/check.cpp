@@ -160,6 +160,10 @@ void add_top_level(Interpreter &ev, const Value &v, Span span, std::vector<ir::S
                {{{span.source, span.begin, span.begin + 4}, "sphere"}});
     else if (v.kind == ValueKind::Closure && parameter_count(ev, v) == 1)
         d.help("a distance function becomes a shape with `implicit(…)`; any other is called");
+    else if (v.kind == ValueKind::Closure && parameter_count(ev, v) == 3)
+        d.help("a function of three coordinates becomes a shape with `implicit`",
+               {{span, fmt::format("implicit(p => {}(p.x, p.y, p.z), within: ball(3))",
+                                   text(ev.sources, span))}});
     else if (is_function(v))
         d.help("call it: `name(…)`");
     else

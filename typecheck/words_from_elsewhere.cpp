@@ -152,6 +152,7 @@ constexpr Row names[] = {
 constexpr Row ways[] = {
     {"a slider is declared by `param r = 1 in 0..2`", "slider knob inputnumber"},
     {"a length has no unit: all of a scene are in the same", "mm cm"},
+    {"an angle about an axis is computed of the point: `atan(p.z, p.x)`", "theta phi"},
     {"there are no objects: a function is given what it needs as arguments", "self this"},
     {"a random number from 0 to 1 is `random(seed)`, a slider `param r = 1 in 0..2`", "uniform"},
     {"a whole number at random is `int(random(lo, hi + 1, seed))`",

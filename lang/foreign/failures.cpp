@@ -65,6 +65,7 @@ bool ForeignSyntax::foreign_operand(Wanted wanted, Index at) {
             .help("leave it away", {{away, ""}});
         return true;
     }
+    if (wanted == Wanted::Statement && bars_of_amount(at)) return true;
     if (wanted == Wanted::Statement && found == Tok::In && is_type_word(text(at + 1)) &&
         kind(at + 2) == Tok::Name) {
         lost_.push_back(at + 2);

@@ -116,6 +116,7 @@ class ForeignSyntax : protected TokenReading {
     bool range_of_param(Index comma);
     bool set_of_points(Index brace);
     bool equation(Span statement);
+    bool formula_bound(Index let, std::uint32_t end);
     bool runs_on(Index name, std::uint32_t end);
     bool setting_assigned(std::string_view name, Span target, Span value);
     void settle_foreign_names();
@@ -253,6 +254,9 @@ class ForeignSyntax : protected TokenReading {
         return diagnostics_.items().size() < most_reports;
     }
     bool bars_of_amount(Index at);
+    std::vector<Edit> parts_of_point(Index first, Index past);
+    std::vector<Edit> shape_of_equation(Index first, Index past);
+    void tell_equation(Span where, bool compares, std::vector<Edit> edits);
     bool keyword_as_name(Index at);
     bool tried_block(Index first);
     bool named_group(Index first);

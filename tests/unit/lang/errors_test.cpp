@@ -179,7 +179,7 @@ TEST_CASE("numbers and colours that are none") {
     const Case cases[] = {
         {"let a = 1.", "bad-number", "let a = 1.0"},
         {"let a = .5", "bad-number", "let a = 0.5"},
-        {"let a = 3x", "bad-number", "let a = 3 * x"},
+        {"let a = 3w", "bad-number", "let a = 3 * w"},
         {"let a = 2.0f", "bad-number", "let a = 2.0"},
         {"let a = 2.f", "bad-number", "let a = 2"},
         {"let a = 1_000", "bad-number", "let a = 1000"},
