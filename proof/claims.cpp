@@ -1,5 +1,6 @@
 // What a shape states of itself: the claims of the library's solids, and the bounds that a type
 // `shape<L>` demands. Proofs: docs/lipschitz.md, 3.
+#include "proof/homogeneous.h"
 #include "proof/prover.h"
 
 #include <algorithm>
@@ -67,11 +68,28 @@ Derived Prover::know_library(ShapeId id) {
             set_lipschitz(k, 1);
         else
             set_lipschitz(k, claims.lipschitz, number(claims.lipschitz).magnitude());
+        if (!exact) hold_claim(id, k);
     }
     if (claims.kind == FieldKind::Estimate) {
         k.fact.status = ProofStatus::Estimated;
     }
     return k;
+}
+
+// A bound that is stated and that the field shows by itself is no axiom, and none is greater.
+void Prover::hold_claim(ShapeId id, Derived &k) {
+    const Shape body = scene.shapes[scene.shapes[id].children[0]];
+    if (!place(id).reported || body.kind != ir::ShapeKind::Leaf || work.spent()) return;
+    if (k.fact.lipschitz_sup <= 1 + slack) return; // most are no less
+    constexpr std::size_t instructions = 50'000; // a face
+    Budget budget;
+    budget.instructions = std::min(instructions, options.field_instructions);
+    const double stated = k.fact.lipschitz_sup;
+    const auto found =
+        bound_along_rays(flattening, ranges, body.args[0], budget, stated * (1 + slack), 0);
+    if (!found) return;
+    held.insert(id);
+    if (*found < stated * (1 - slack)) set_lipschitz(k, *found);
 }
 
 Derived Prover::know_contract(ShapeId id) {

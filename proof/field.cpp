@@ -3,6 +3,7 @@
 #include "proof/field.h"
 
 #include "proof/composed.h"
+#include "proof/homogeneous.h"
 #include "proof/jumps.h"
 #include "proof/question.h"
 #include "proof/reduced.h"
@@ -53,8 +54,11 @@ double distance(const Cell &cell) {
 std::array<double, 3> beside_middle(const Cell &cell) {
     constexpr double beside[3] = {0.0137, 0.0171, 0.0119};
     std::array<double, 3> out = middle(cell);
-    for (std::size_t i = 0; i < 3; ++i)
-        if (cell.p[i].finite()) out[i] += beside[i] * cell.p[i].width();
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Interval &x = cell.p[i];
+        const double far = std::max(1.0, std::fabs(out[i])); // of an endless one: further out
+        out[i] += beside[i] * (x.finite() ? x.width() : x.hi < infinity ? -far : far);
+    }
     return out;
 }
 
@@ -387,6 +391,10 @@ double seen_once(Flattening &own, const Ranges &all, NodeId field, const Domain 
     return most;
 }
 
+bool holds_origin(const Cell &box) {
+    return std::ranges::all_of(box.p, [](const Interval &x) { return x.contains(0); });
+}
+
 // By all of the field, and where that is loose from coordinates that turn.
 FieldBound bound_of_all(Flattening &own, const Ranges &all, NodeId copy, const Domain &domain,
                         const Budget &budget) {
@@ -423,6 +431,11 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
     return std::move(question).answer([&](Flattening &own, const Ranges &all, NodeId copy) {
         if (const auto found = bound_by_distance(own, all, copy, domain, budget)) return *found;
         FieldBound out = bound_of_all(own, all, copy, domain, budget);
+        if (std::isfinite(out.lipschitz) && out.lipschitz > budget.tolerance * out.sampled &&
+            out.lipschitz > budget.enough && holds_origin(domain.box))
+            if (const auto less =
+                    bound_along_rays(own, all, copy, budget, out.lipschitz, out.sampled))
+                out.lipschitz = *less;
         if (out.lipschitz <= budget.enough || is_near(own.graph, copy, out)) return out;
         const bool refused = !std::isfinite(out.lipschitz);
         const auto parts = bound_by_parts(own, all, copy, domain, budget, refused);

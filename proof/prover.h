@@ -124,6 +124,7 @@ struct Prover {
                     const CellAim &aim); // sets Scene::cells where they pay
     Derived know_instances(ir::ShapeId id);
     Derived know_library(ir::ShapeId id);
+    void hold_claim(ir::ShapeId id, Derived &k);
     Derived know_contract(ir::ShapeId id);
 
     Ball ball_of(ir::ShapeId id,
@@ -219,7 +220,8 @@ struct Prover {
     std::optional<FieldBound> holds_stated(ir::ShapeId id, ir::NodeId field, double stated);
     FieldBound bound_apart(ir::NodeId field, const Place &here, double stated, bool own);
     void test_stated(ir::ShapeId id, ir::NodeId field, double stated, const FieldBound &found);
-    std::unordered_set<ir::ShapeId> held; // of those that state a bound: for which it is proved
+    std::unordered_set<ir::ShapeId> held; // of those that state a bound: for which it is proved,
+                                          // and of the library's
     std::vector<std::string>
     chain(ir::ShapeId id); // the operations that make a bound, steepest child first
 };
