@@ -115,18 +115,6 @@ Tie tie_of(const Level &level, const Level &other, const Point &lo, const Point 
     return tie;
 }
 
-namespace {
-
-// Whether a box is not in the inside of what the field is cut off at.
-bool reaches_cut(const Field &field, const Point &lo, const Point &hi) {
-    if (!field.cut) return false;
-    for (std::size_t i = 0; i < 3; ++i)
-        if (!(lo[i] > (*field.cut)[0][i] && hi[i] < (*field.cut)[1][i])) return true;
-    return false;
-}
-
-} // namespace
-
 std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                              const Point &lo, const Point &hi) {
     std::vector<Level> levels;
@@ -140,14 +128,56 @@ std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, c
 
 namespace {
 
-// The field, of what was found of a tape's numbers.
-std::optional<Linear> linear_in(const Slopes &slopes, const Evaluator &evaluator, const Point &lo,
+// The field, as it is cut off at bounds.
+struct CutField {
+    Varying number;            // what it is and how it changes
+    Interval middle;           // its float at the middle
+    std::vector<Linear> faces; // the bounds that the field may be 0 at
+};
+
+// How far a coordinate is beyond one of the ends that the field is cut off at, as a number of the box.
+Varying beyond_end(const SlopeQuestion &in, std::size_t axis, float end, bool high) {
+    constexpr double unit_roundoff = 0x1.01p-24;
+    const double sign = high ? 1 : -1;
+    Varying number;
+    number.known = true;
+    const double a = sign * (double(in.lo[axis]) - end), b = sign * (double(in.hi[axis]) - end);
+    number.error = unit_roundoff * std::max(std::fabs(a), std::fabs(b));
+    number.range = {std::min(a, b) - number.error, std::max(a, b) + number.error};
+    number.slope[axis] = {sign, sign};
+    number.slope[3] = {sign * in.along[axis], sign * in.along[axis]};
+    return number;
+}
+
+// Of what was found of a tape's numbers: the greatest of the field and of how far the place is beyond
+// each end of the bounds.
+CutField cut_field_in(const Slopes &slopes, const Evaluator &evaluator, const SlopeQuestion &in) {
+    const Field &field = evaluator.field;
+    const std::uint32_t result = field.program.results[0].address;
+    CutField cut{
+        slopes.at(result), {evaluator.ranges.lo[result + 1], evaluator.ranges.hi[result + 1]}, {}};
+    const Point at = middle_point(in.lo, in.hi);
+    for (std::size_t i = 0; field.cut && i < 3; ++i)
+        for (const bool high : {false, true}) {
+            const float end = (*field.cut)[high][i];
+            const Varying face = beyond_end(in, i, end, high);
+            if (face.range.hi < cut.number.range.lo) continue;
+            const double there = high ? at[i] - end : end - at[i]; // as floats have it
+            cut.middle = {std::max(cut.middle.lo, there), std::max(cut.middle.hi, there)};
+            Varying both = through(cpu::Kernel::MaxF, {cut.number, face});
+            both.jumps = cut.number.jumps, both.beyond = cut.number.beyond;
+            cut.number = both;
+            if (face.range.lo <= 0 && face.range.hi >= 0)
+                cut.faces.push_back(linear_of(face, {there, there}, in.lo, in.hi));
+        }
+    return cut;
+}
+
+std::optional<Linear> linear_in(const CutField &cut, const Evaluator &evaluator, const Point &lo,
                                 const Point &hi) {
-    const std::uint32_t result = evaluator.field.program.results[0].address;
-    const Varying field = slopes.at(result);
-    if (!field.known || (field.jumps && !evaluator.field.proved)) return std::nullopt;
-    const Linear linear = linear_of(
-        field, {evaluator.ranges.lo[result + 1], evaluator.ranges.hi[result + 1]}, lo, hi);
+    const Varying &number = cut.number;
+    if (!number.known || (number.jumps && !evaluator.field.proved)) return std::nullopt;
+    const Linear linear = linear_of(number, cut.middle, lo, hi);
     return std::isfinite(linear.value + linear.off) ? std::optional(linear) : std::nullopt;
 }
 
@@ -163,12 +193,13 @@ std::optional<Rising> rising_over(Evaluator &evaluator, const cpu::ShortTape &ta
                                   cpu::Boxes &boxes, const Point &lo, const Point &hi,
                                   const std::array<double, 3> &along) {
     const cpu::Program::Slot &result = evaluator.field.program.results[0];
-    if (reaches_cut(evaluator.field, lo, hi) || result.shared || tape.steps.size() > longest_tape)
-        return std::nullopt;
-    const Slopes slopes = slopes_over(evaluator, tape, boxes, {lo, hi, along});
-    const std::optional<Linear> linear = linear_in(slopes, evaluator, lo, hi);
+    if (result.shared || tape.steps.size() > longest_tape) return std::nullopt;
+    const SlopeQuestion question{lo, hi, along};
+    const Slopes slopes = slopes_over(evaluator, tape, boxes, question);
+    const CutField cut = cut_field_in(slopes, evaluator, question);
+    const std::optional<Linear> linear = linear_in(cut, evaluator, lo, hi);
     if (!linear) return std::nullopt;
-    const Interval rise = slopes.at(result.address).slope[3];
+    const Interval rise = cut.number.slope[3];
     return Rising{*linear, rise.lo - 1e-9 * size(rise)};
 }
 
@@ -226,14 +257,23 @@ Border border_over(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes 
     const Field &field = evaluator.field;
     const cpu::Program::Slot &result = field.program.results[0];
     Border border;
-    if (!field.proved || reaches_cut(field, lo, hi) || result.shared ||
-        tape.steps.size() > longest_tape)
-        return border;
-    const Slopes slopes = slopes_over(evaluator, tape, boxes, {lo, hi, {}, true});
-    border.linear = linear_in(slopes, evaluator, lo, hi);
+    if (!field.proved || result.shared || tape.steps.size() > longest_tape) return border;
+    const SlopeQuestion question{lo, hi, {}, true};
+    const Slopes slopes = slopes_over(evaluator, tape, boxes, question);
+    const CutField cut = cut_field_in(slopes, evaluator, question);
+    border.linear = linear_in(cut, evaluator, lo, hi);
     border.zeros = slopes.zeros_at(result.address);
-    for (const Linear &sheet : border.zeros.sheets)
-        if (!std::isfinite(sheet.value + sheet.off)) border.zeros = {};
+    // Where the greatest of several numbers is 0 one of them is.
+    if (cut.number.range.lo > 0)
+        border.zeros = {true, {}};
+    else if (!cut.faces.empty() && !cut.number.jumps && border.linear && is_steady(*border.linear))
+        border.zeros = {true, {*border.linear}};
+    else if (border.zeros.known)
+        border.zeros.sheets.insert(border.zeros.sheets.end(), cut.faces.begin(), cut.faces.end());
+    if (std::ranges::any_of(border.zeros.sheets, [](const Linear &sheet) {
+            return !std::isfinite(sheet.value + sheet.off);
+        }))
+        border.zeros = {};
     if (!border.zeros.known || border.zeros.sheets.size() != 1) return border;
     border.like = like_field(evaluator, tape, border.zeros.sheets[0], lo, hi);
     return border;
@@ -244,8 +284,9 @@ std::optional<double> least_slope_along(Evaluator &evaluator, const cpu::ShortTa
                                         const std::array<double, 3> &along) {
     const cpu::Program::Slot &result = evaluator.field.program.results[0];
     if (result.shared || tape.steps.size() > longest_tape) return std::nullopt;
-    const Slopes slopes = slopes_over(evaluator, tape, boxes, {lo, hi, along});
-    const Varying field = slopes.at(result.address);
+    const SlopeQuestion question{lo, hi, along};
+    const Slopes slopes = slopes_over(evaluator, tape, boxes, question);
+    const Varying field = cut_field_in(slopes, evaluator, question).number;
     if (!field.known || (field.jumps && !evaluator.field.proved)) return std::nullopt;
     return field.slope[3].lo - 1e-9 * size(field.slope[3]);
 }

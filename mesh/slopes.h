@@ -32,7 +32,7 @@ Tie tie_of(const Level &level, const Level &other, const Point &lo, const Point 
 std::vector<Level> levels_in(Evaluator &evaluator, const cpu::ShortTape &tape, cpu::Boxes &boxes,
                              const Point &lo, const Point &hi);
 
-// The field in a box. None where it is not known how the field changes, or it is cut off at bounds.
+// The field in a box, as it is cut off at bounds. None where it is not known how it changes.
 // `boxes` is memory.
 std::optional<Linear> linear_over(Evaluator &evaluator, const cpu::ShortTape &tape,
                                   cpu::Boxes &boxes, const Point &lo, const Point &hi);

@@ -3,6 +3,7 @@
 #include "driver/compile.h"
 #include "mesh/mend.h"
 #include "mesh/shape.h"
+#include "mesh/slopes.h"
 #include "tests/support/mesh_checks.h"
 
 #include <catch2/catch.hpp>
@@ -50,6 +51,64 @@ TEST_CASE("pieces and handles of plain solids are proved") {
         CHECK(mended.certificate.components == pieces);
         CHECK(mended.certificate.genus == genus);
     }
+}
+
+TEST_CASE("pieces and handles of what bounds cut off are proved, and its area is enclosed") {
+    struct Cut {
+        Known known;
+        ir::Box bounds;
+        double area; // 0: not known
+    };
+    constexpr double pi = 3.14159265358979;
+    for (const auto &[known, bounds, area] :
+         {Cut{{"sphere(1)", 24, 1, 0}, {{-2, -0.5, -2}, {2, 2, 2}}, 3 * pi + 0.75 * pi},
+          Cut{{"torus(1, 0.3)", 32, 1, 0}, {{0.01, -2, -2}, {2, 2, 2}}, 0},
+          Cut{{"torus(1, 0.3)", 32, 2, 0}, {{-0.5, -2, -2}, {0.5, 2, 2}}, 0},
+          Cut{{"torus(1, 0.3)", 32, 1, 1}, {{-2, -0.1, -2}, {2, 0.1, 2}}, 0},
+          Cut{{"plane(Y, 0) | cylinder(0.3, 3)", 32, 1, 0}, {{-1, -0.6, -1}, {1, 0.9, 1}}, 0},
+          Cut{{"plane(X, 0.03)", 16, 1, 0}, {{-1, -1, -1}, {1, 1, 1}}, 8 + 4 * 2 * 1.03},
+          // all of it is filled
+          Cut{{"plane(Y, 9)", 16, 1, 0}, {{-1, -1, -1}, {1, 1, 1}}, 24}}) {
+        INFO(known.text);
+        mesh::Settings settings;
+        settings.resolution = known.resolution;
+        settings.bounds = bounds;
+        const ir::Scene scene = shape_scene(known.text);
+        mesh::Mended mended = make_certified_mesh(scene, settings);
+        CHECK(mended.certificate.certified());
+        CHECK(mended.certificate.shape.proved);
+        CHECK(mended.certificate.components == known.pieces);
+        CHECK(mended.certificate.genus == known.genus);
+        mesh::Progress progress;
+        enclose_measures(scene, settings, mended.made, progress, mended.certificate);
+        const mesh::Enclosure found = mended.certificate.area;
+        CHECK(found.lo <= mended.certificate.mesh_area);
+        CHECK(found.hi < 2 * mended.certificate.mesh_area);
+        if (area > 0) {
+            CHECK(found.lo <= area);
+            CHECK(found.hi >= area);
+        }
+    }
+}
+
+TEST_CASE(
+    "a way that the field rises along is none where bounds that it falls beyond come nearer") {
+    const ir::Scene scene = shape_scene("sphere(1)");
+    const mesh::Field field(scene, 0, ir::Box{{-2, -2, -2}, {0.5, 2, 2}});
+    mesh::Evaluator evaluator(field);
+    cpu::Boxes boxes;
+    const auto rise = [&](const mesh::Point &lo, const mesh::Point &hi,
+                          const std::array<double, 3> &along) {
+        const auto found = rising_over(evaluator, *field.whole, boxes, lo, hi, along);
+        REQUIRE(found);
+        return found->least;
+    };
+    // Next to the cut, by a side where only the ball is, only the cut, and at their edge.
+    CHECK(rise({0.1f, 0.9f, -0.1f}, {0.2f, 1.0f, 0.1f}, {0, 1, 0}) > 0.8);
+    CHECK(rise({0.49f, -0.1f, -0.1f}, {0.51f, 0.1f, 0.1f}, {1, 0, 0}) > 0.99);
+    CHECK(rise({0.49f, 0.84f, -0.05f}, {0.51f, 0.88f, 0.05f}, {0, 1, 0}) < 1e-9);
+    CHECK(rise({0.49f, 0.84f, -0.05f}, {0.51f, 0.88f, 0.05f}, {0.7, 0.7, 0}) > 0.5);
+    CHECK(rise({0.49f, 0.84f, -0.05f}, {0.51f, 0.88f, 0.05f}, {-0.3, 0.9, 0}) < -0.29);
 }
 
 TEST_CASE("pieces of long blends are proved: of most operands nothing is near") {
