@@ -202,9 +202,10 @@ struct Bases {
         parts.resize(std::size_t(n));
         const NodeId there = n == 3 ? point : graph.make(Op::Make, graph[vector].type, parts);
         const ir::Substitution map{{vector, there}};
-        const auto of = [&](NodeId id) { return id ? ir::substitute(graph, id, map) : id; };
-        const Claim out{of(claim.of), of(claim.choice), of(claim.comparison), of(claim.u),
-                        of(claim.v)};
+        std::vector<NodeId> all{claim.of, claim.choice, claim.u, claim.v};
+        if (claim.comparison) all.push_back(claim.comparison);
+        const auto seen = ir::substitute(graph, all, map); // else the choice is another one
+        const Claim out{seen[0], seen[1], claim.comparison ? seen[4] : NodeId{}, seen[2], seen[3]};
         const bool same_op = graph[out.choice].op == graph[claim.choice].op;
         return same_op ? std::optional(out) : std::nullopt;
     }

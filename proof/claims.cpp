@@ -81,7 +81,7 @@ void Prover::hold_claim(ShapeId id, Derived &k) {
     const Shape body = scene.shapes[scene.shapes[id].children[0]];
     if (!place(id).reported || body.kind != ir::ShapeKind::Leaf || work.spent()) return;
     if (k.fact.lipschitz_sup <= 1 + slack) return; // most are no less
-    constexpr std::size_t instructions = 50'000; // a face
+    constexpr std::size_t instructions = 50'000;   // a face
     Budget budget;
     budget.instructions = std::min(instructions, options.field_instructions);
     const double stated = k.fact.lipschitz_sup;

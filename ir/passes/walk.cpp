@@ -201,15 +201,32 @@ NodeId substitute(Graph &graph, NodeId root, const Substitution &map) {
     return substitute(graph, root, map, visited);
 }
 
-NodeId substitute(Graph &graph, NodeId root, const Substitution &map, std::size_t &visited) {
-    Copier copier{graph, map, false, false, map};
+namespace {
+
+Copier copier_of(Graph &graph, const Substitution &map) {
+    Copier out{graph, map, false, false, map};
     for (const auto &[from, to] : map) {
-        copier.points |= graph[from].op == Op::Point;
-        copier.any_kind |= graph[from].op != Op::Point && graph[from].op != Op::Var;
+        out.points |= graph[from].op == Op::Point;
+        out.any_kind |= graph[from].op != Op::Point && graph[from].op != Op::Var;
     }
+    return out;
+}
+
+} // namespace
+
+NodeId substitute(Graph &graph, NodeId root, const Substitution &map, std::size_t &visited) {
+    Copier copier = copier_of(graph, map);
     const NodeId copy = copier.copy(root);
     visited += copier.done.size();
     return copy;
+}
+
+std::vector<NodeId> substitute(Graph &graph, std::span<const NodeId> roots,
+                               const Substitution &map) {
+    Copier copier = copier_of(graph, map);
+    std::vector<NodeId> out;
+    for (const NodeId root : roots) out.push_back(copier.copy(root));
+    return out;
 }
 
 } // namespace fathom::ir

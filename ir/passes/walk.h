@@ -14,4 +14,9 @@ NodeId substitute(Graph &graph, NodeId root, const Substitution &map);
 // The same, and counts the nodes that it looked at.
 NodeId substitute(Graph &graph, NodeId root, const Substitution &map, std::size_t &visited);
 
+// Of several expressions at once: what they have in common they have in common afterwards. (A loop
+// that is copied twice is two loops, and what reads them are two nodes.)
+std::vector<NodeId> substitute(Graph &graph, std::span<const NodeId> roots,
+                               const Substitution &map);
+
 } // namespace fathom::ir
