@@ -169,6 +169,13 @@ void enclose_measures(const ir::Scene &scene, const Settings &settings, const Ma
     certificate.open_place = of.open_place;
     certificate.looked_for_area = of.looked;
     certificate.used_bound = certificate.used_bound || of.used_bound;
+    const ShapeAnswer &shape = certificate.shape;
+    if (!shape.proved) return;
+    certificate.least_volume = std::max(certificate.least_volume, shape.volume.lo);
+    certificate.largest_volume = std::min(certificate.largest_volume, shape.volume.hi);
+    certificate.area = {std::max(of.area.lo, shape.area.lo), std::min(of.area.hi, shape.area.hi)};
+    certificate.open_places = 0;
+    certificate.looked_for_area = true;
 }
 
 } // namespace fathom::mesh

@@ -31,6 +31,8 @@ struct ShapeAnswer {
     // Samples see walls, gaps or edges that cells are too large for: it may have others.
     bool doubted = false;
     std::optional<Form> finer; // … or cells of half the side show others
+    // Where it is proved, what the surface and the solid measure by the same directions.
+    Enclosure area, volume;
 };
 struct Certificate {
     // Every point of the mesh has surface as near as this, and every point of the surface in the

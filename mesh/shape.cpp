@@ -1,7 +1,6 @@
 #include "mesh/shape.h"
 
-#include "mesh/slopes.h"
-#include "mesh/walk.h"
+#include "mesh/shape_area.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +15,10 @@ constexpr int most_failed = 8;         // boxes above leaves; more of that size 
 constexpr std::size_t hopeless = 16;   // leaves of a task of which no slopes are known, or
 constexpr std::size_t too_many = 64;   // … in which it is open: no more looks
 constexpr double least_of_task = 5000; // kernels
-constexpr double by_rounding = 1e-9;   // of a length
+constexpr double most_shares = 8;      // of the work by leaves, that a task may take
+constexpr double least_at_edges = 1000;
+constexpr double share_at_edges = 2; // of those taken, for the area across edges
+constexpr double by_rounding = 1e-9; // of a length
 
 struct Facet {
     Triangle3 at{};
@@ -113,7 +115,11 @@ struct ShapeProver {
     Splitter splitter;
     const std::vector<Facet> &facets;
     const double ulp;
-    double kernels = 0;           // so many may be looked at yet
+    double taken = 0, at_edges = 0;    // kernels; for the area of what lies across edges
+    double kernels = 0;                // so many may be looked at yet
+    std::optional<SteadyBox> steady{}; // of the box that was found to be so last,
+    Block steady_in{};                 // … which this is
+    ShapeSums sums{};                  // of steady boxes of a task
     std::array<int, 32> failed{}; // boxes of a level above leaves, one after the other, of a task
 
     Block grown(const Block &box) const {
@@ -161,7 +167,7 @@ struct ShapeProver {
     // it are passed outward.
     Answer is_steady(const cpu::ShortTape &tape, const Block &wide,
                      const std::vector<std::uint32_t> &touched) {
-        kernels -= tape.cost;
+        kernels -= tape.cost, taken += tape.cost;
         Evaluator &evaluator = splitter.evaluator;
         const auto passes = [&](const Real3 &way) {
             return std::ranges::all_of(touched, [&](std::uint32_t t) {
@@ -173,8 +179,12 @@ struct ShapeProver {
         const std::optional<Rising> rising = rising_over(evaluator, tape, splitter.boxes, wide.lo,
                                                          wide.hi, across.value_or(Real3{}));
         if (!rising) return Answer::Unknown;
-        if (across && rising->least > by_rounding) return Answer::Yes;
         const Linear &linear = rising->linear;
+        const auto is_so = [&](const Real3 &way, double least) {
+            steady = steady_box(linear, way, least), steady_in = wide;
+            return Answer::Yes;
+        };
+        if (across && rising->least > by_rounding) return is_so(*across, rising->least);
         const std::optional<Real3> mean =
             unit_of({linear.slope[0], linear.slope[1], linear.slope[2]});
         std::optional<Real3> both;
@@ -187,17 +197,32 @@ struct ShapeProver {
                 rise += (*way)[i] * linear.slope[i] - std::fabs((*way)[i]) * linear.spread[i];
                 size += std::fabs(linear.slope[i]) + linear.spread[i];
             }
-            if (rise > by_rounding * size) return Answer::Yes;
+            if (rise > by_rounding * size) return is_so(*way, rise);
         }
         for (const std::optional<Real3> &way : ways) {
             if (!way || !passes(*way)) continue;
-            kernels -= tape.cost;
+            kernels -= tape.cost, taken += tape.cost;
             const std::optional<double> rise =
                 least_slope_along(evaluator, tape, splitter.boxes, wide.lo, wide.hi,
                                   {(*way)[0], (*way)[1], (*way)[2]});
-            if (rise && *rise > by_rounding) return Answer::Yes;
+            if (rise && *rise > by_rounding) return is_so(*way, *rise);
         }
         return Answer::No;
+    }
+
+    // After a box was found to be steady: takes in what parts of it measure.
+    void measure(const cpu::ShortTape &tape, std::span<const Block> parts) {
+        constexpr double poor = 4;
+        const auto may_look = [&] { return at_edges < share_at_edges * taken + least_at_edges; };
+        if (steady->slant.most > poor) {
+            const Block wide = steady_in;
+            const std::optional<Slant> other = slant_in(splitter.evaluator, tape, splitter.boxes,
+                                                        wide.lo, wide.hi, steady->linear);
+            if (other && other->most < steady->slant.most) steady->slant = *other;
+        }
+        const ShapeSums found = sums_in_parts(splitter, tape, *steady, parts, may_look());
+        at_edges += found.looks * tape.cost;
+        sums.add(found);
     }
 
     // Whether a point of a leaf that no triangle touches lies inside of the mesh, by the ways to it from
@@ -225,6 +250,7 @@ struct ShapeProver {
         const Block wide = grown(box);
         const std::vector<std::uint32_t> touched = touching(wide, among);
         const Answer answer = is_steady(tape, wide, touched);
+        if (answer == Answer::Yes) measure(tape, {&box, 1});
         if (answer != Answer::No || halvings == 0 || kernels < 0) return answer;
         std::array<Block, 8> parts;
         cpu::Boxes &boxes = splitter.boxes;
@@ -250,6 +276,8 @@ struct ShapeProver {
             if (space[k] != Space::Open && touching(grown(parts[k]), touched).empty()) {
                 const std::optional<bool> inside = is_inside(real(parts[k].lo), leaf);
                 if (inside != (space[k] == Space::Inside)) return Answer::No;
+                const double volume = whole_of(parts[k]), solid = *inside ? volume : 0;
+                sums.add({{}, {solid, solid}, volume, 0});
                 continue;
             }
             const Answer part = prove(tape, parts[k], leaf, touched, halvings - 1);
@@ -266,6 +294,7 @@ struct ShapeFound {
     Real3 place{};           // one of them
     std::size_t unknown = 0; // of these, those of which no slopes are known
     std::vector<Cell> cells; // those that smaller ones may tell of
+    ShapeSums sums;
 };
 
 // The leaves of a task.
@@ -311,6 +340,10 @@ struct ShapeTask {
             if (prover.is_steady(*shorter, wide, prover.overlapping(wide, near)) ==
                 ShapeProver::Answer::Yes) {
                 failed = 0;
+                std::vector<Block> parts;
+                for (std::size_t k = first; k < last; ++k)
+                    parts.push_back(box_of(leaves[k], leaves[k].level));
+                prover.measure(*shorter, parts);
                 return;
             }
             ++failed;
@@ -335,6 +368,8 @@ struct ShapeTask {
         }
         tape = tape_in(prover.splitter, prover.splitter.evaluator.field.whole, prover.grown(all));
         prover.failed = {};
+        prover.sums = {};
+        prover.taken = prover.at_edges = 0;
         found.looked = true;
         for (std::size_t k = 0, next; k < leaves.size(); k = next) {
             const int of = std::min(level, leaves[k].level);
@@ -342,6 +377,7 @@ struct ShapeTask {
             for (next = k + 1; next < leaves.size() && box_of(leaves[next], of).lo == at;) ++next;
             prove(prover, k, next, of, found);
         }
+        found.sums = prover.sums;
     }
 };
 
@@ -398,12 +434,22 @@ void prove_shape(const Field &field, const Settings &settings, const Made &made,
     const std::size_t rounds = (tasks.size() + tasks_at_once - 1) / tasks_at_once;
     const double from = progress.from, to = progress.to;
     std::size_t open = 0;
+    double left = work; // what tasks leave over others may take
+    double looked = 0;  // leaves
+    bool vain = false;
+    std::vector<double> taken(tasks.size());
     for (std::size_t round = 0; round < rounds; ++round) {
         const auto count = (tasks.size() - round + rounds - 1) / rounds;
         const auto number_of = [&](std::size_t k) { return round + k * rounds; };
-        if (open > few_open_leaves) {
-            for (std::size_t k = 0; k < count; ++k)
-                found[number_of(k)].open = tasks[number_of(k)].size();
+        // What the rest would take, as far as those that were looked at tell.
+        const double rest = looked > 0 ? (work - left) * (double(leaves) / looked - 1) : 0;
+        vain = vain || (rest > left && left < work);
+        if (open > few_open_leaves || vain) {
+            for (std::size_t k = 0; k < count; ++k) {
+                const std::vector<Cell> &unseen = tasks[number_of(k)];
+                found[number_of(k)].open = unseen.size();
+                found[number_of(k)].place = real(point_of(lattice, unseen[0].at));
+            }
             continue;
         }
         progress.from = from + (to - from) * double(round) / double(rounds);
@@ -413,22 +459,37 @@ void prove_shape(const Field &field, const Settings &settings, const Made &made,
             [&] { return ShapeProver(field, made.octree, facets); },
             [&](ShapeProver &prover, std::size_t k) {
                 ShapeTask task{made.octree, lattice, grid, tasks[number_of(k)]};
-                prover.kernels =
-                    std::max(least_of_task, work * static_cast<double>(task.leaves.size()) /
-                                                static_cast<double>(leaves));
+                const double share =
+                    work * static_cast<double>(task.leaves.size()) / static_cast<double>(leaves);
+                prover.kernels = std::max(least_of_task, most_shares * share);
                 task.prove_all(prover, found[number_of(k)]);
+                taken[number_of(k)] = prover.taken;
             });
-        for (std::size_t k = 0; k < count; ++k) open += found[number_of(k)].open;
+        for (std::size_t k = 0; k < count; ++k) {
+            open += found[number_of(k)].open;
+            left -= taken[number_of(k)];
+            looked += static_cast<double>(tasks[number_of(k)].size());
+        }
     }
     progress.from = from, progress.to = to;
     bool placed = false;
+    ShapeSums sums;
     for (const ShapeFound &of : found) {
-        if (!placed && of.looked && of.open > 0) certificate.shape.place = of.place, placed = true;
+        sums.add(of.sums);
+        if (of.open > 0 && (of.looked ? !placed : certificate.shape.open == 0))
+            certificate.shape.place = of.place;
+        placed = placed || (of.looked && of.open > 0);
         certificate.shape.open += of.open;
         certificate.shape.cells.insert(certificate.shape.cells.end(), of.cells.begin(),
                                        of.cells.end());
     }
     certificate.shape.proved = certificate.shape.open == 0 && !progress.cancelled;
+    certificate.shape.area = {sums.area.lo * (1 - rounding_share),
+                              sums.area.hi * (1 + rounding_share)};
+    // Of what is neither left out as inside or outside nor here, nothing is said.
+    const double sizes = rounding_share * certificate.largest_volume;
+    certificate.shape.volume = {certificate.least_volume + sums.volume.lo - sizes,
+                                certificate.largest_volume - (sums.whole - sums.volume.hi) + sizes};
 }
 
 } // namespace fathom::mesh

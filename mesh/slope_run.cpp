@@ -281,10 +281,8 @@ Alternatives Slopes::alternatives_at(std::uint32_t address, const Varying &numbe
 
 Linear linear_of(const Varying &number, Interval middle, const Point &lo, const Point &hi) {
     const Point at = middle_point(lo, hi);
-    Linear linear{0.5 * (middle.lo + middle.hi),
-                  0.5 * (middle.hi - middle.lo) + 2 * (number.error + 2 * number.beyond),
-                  {},
-                  {}};
+    const double rounding = 0.5 * (middle.hi - middle.lo) + 2 * (number.error + 2 * number.beyond);
+    Linear linear{0.5 * (middle.lo + middle.hi), rounding, rounding, {}, {}};
     for (std::size_t i = 0; i < 3; ++i) {
         const Interval slope = number.slope[i];
         const double reach = std::max(double(hi[i]) - at[i], double(at[i]) - lo[i]);

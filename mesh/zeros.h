@@ -14,6 +14,7 @@ namespace fathom::mesh {
 // value + slope · (p - middle_point) than `off`, and so are its floats.
 struct Linear {
     double value = 0, off = 0;
+    double rounding = 0; // so much of `off` is what floats are off
     std::array<double, 3> slope{};
     std::array<double, 3> spread{}; // along each axis its slopes are no farther than this from that
     bool operator==(const Linear &) const = default;

@@ -111,6 +111,43 @@ TEST_CASE(
     CHECK(rise({0.49f, 0.84f, -0.05f}, {0.51f, 0.88f, 0.05f}, {-0.3, 0.9, 0}) < -0.29);
 }
 
+TEST_CASE("where the shape is proved the same directions enclose area and volume") {
+    constexpr double pi = 3.14159265358979;
+    struct Measured {
+        const char *text;
+        int resolution;
+        double area, volume;
+    };
+    for (const auto &[text, resolution, area, volume] :
+         {Measured{"sphere(1)", 16, 4 * pi, 4 * pi / 3},
+          Measured{"sphere(1)", 61, 4 * pi, 4 * pi / 3}, Measured{"box([1, 2, 0.5])", 24, 7, 1},
+          Measured{"box([1, 2, 0.5]).rotate(0.4, axis: [1, 2, 3])", 33, 7, 1},
+          Measured{"torus(1, 0.3)", 40, 4 * pi * pi * 0.3, 2 * pi * pi * 0.09},
+          Measured{"cylinder(0.5, 1)", 48, 1.5 * pi, 0.25 * pi},
+          Measured{"box(1) - cylinder(0.25, 2)", 48, 6 - pi / 8 + pi / 2, 1 - pi / 16},
+          Measured{"sphere(1).shell(0.2) | sphere(0.3)", 48, 4 * pi * (1.21 + 0.81 + 0.09),
+                   4 * pi / 3 * (1.331 - 0.729 + 0.027)}}) {
+        INFO(text);
+        const mesh::Certificate certificate = mended_of(text, resolution).certificate;
+        REQUIRE(certificate.shape.proved);
+        CHECK(certificate.shape.area.lo <= area);
+        CHECK(certificate.shape.area.hi >= area);
+        CHECK(certificate.shape.volume.lo <= volume);
+        CHECK(certificate.shape.volume.hi >= volume);
+        CHECK(certificate.shape.volume.lo > certificate.least_volume);
+        CHECK(certificate.shape.volume.hi < certificate.largest_volume);
+    }
+}
+
+TEST_CASE("blocks that take little leave others more to be looked at") {
+    // All that takes work lies along its edges and its hole.
+    const std::string text = "box([1, 0.7, 0.5]).rotate(0.5, axis: [1, 2, 3]) - cylinder(0.2, 2)";
+    const mesh::Mended mended = mended_of(text, 128);
+    CHECK(mended.certificate.shape.proved);
+    CHECK(mended.certificate.genus == 1);
+    CHECK(mended.certificate.shape.area.hi < 8 * mended.certificate.mesh_area);
+}
+
 TEST_CASE("pieces of long blends are proved: of most operands nothing is near") {
     const mesh::Mended mended = mended_of(R"(
 smooth_union(0.02) {
