@@ -110,7 +110,9 @@ std::string rule_text(const ir::Scene &scene, ShapeId id, Prover &prover) {
         return own_factor(scene, id) > 1.0001 ? "both fields' slopes, weighed by this profile"
                                               : "a mean of the fields' slopes";
     case ShapeKind::Library:
-        return opaque(scene, id) ? "stated in the library, beside its proof" : "its body's";
+        return opaque(scene, id)
+                   ? "stated in the library, beside its proof, or less where its field shows it"
+                   : "its body's";
     case ShapeKind::Within: {
         const auto found = scene.cells.find(id);
         if (!scene.shapes.regions[shape.payload].less.empty() && own_factor(scene, id) > 1.0001)

@@ -160,10 +160,11 @@ void add_top_level(Interpreter &ev, const Value &v, Span span, std::vector<ir::S
                {{{span.source, span.begin, span.begin + 4}, "sphere"}});
     else if (v.kind == ValueKind::Closure && parameter_count(ev, v) == 1)
         d.help("a distance function becomes a shape with `implicit(…)`; any other is called");
-    else if (v.kind == ValueKind::Closure && parameter_count(ev, v) == 3)
+    else if (const std::string_view name = text(ev.sources, span);
+             v.kind == ValueKind::Closure && parameter_count(ev, v) == 3 &&
+             name.find_first_of(" (") == name.npos)
         d.help("a function of three coordinates becomes a shape with `implicit`",
-               {{span, fmt::format("implicit(p => {}(p.x, p.y, p.z), within: ball(3))",
-                                   text(ev.sources, span))}});
+               {{span, fmt::format("implicit(p => {}(p.x, p.y, p.z), within: ball(3))", name)}});
     else if (is_function(v))
         d.help("call it: `name(…)`");
     else
