@@ -91,11 +91,12 @@ bool ForeignSyntax::set_of_points(Index brace) {
 }
 
 // The edits that make parts of a point of the coordinates in [first, past) that are declared nowhere; empty
-// where there are none, or hundreds.
+// where there are none, or hundreds, or where names may be bound within.
 std::vector<Edit> ForeignSyntax::parts_of_point(Index first, Index past) {
     constexpr std::size_t most_edits = 200;
     std::vector<Edit> edits;
     for (Index i = first; i < past; ++i) {
+        if (is_one_of(kind(i), {Tok::FatArrow, Tok::For, Tok::Let, Tok::Var})) return {};
         const bool coordinate = kind(i) == Tok::Name && is_one_of(text(i), coordinates) &&
                                 (i == 0 || kind(i - 1) != Tok::Dot) &&
                                 !is_one_of(kind(i + 1), {Tok::Open, Tok::Colon}) &&

@@ -39,6 +39,9 @@ TEST_CASE("precedence, loosest first") {
     CHECK(tree_of("a * -b") == "binary *(name a, unary -(name b))");
     CHECK(tree_of("-a * b") == "binary *(unary -(name a), name b)");
     CHECK(tree_of("-2^2") == "unary -(binary ^(int 2, int 2))");
+    for (const char *bound : {"let n = fold(0..3, 0, (x, y) => x + y) - 1",
+                              "let n = len([for x in 0..3 { x^2 }]) + 1"}) // names of their own
+        CHECK(Parsed(bound).report().empty());
     CHECK(tree_of("2^-a^3") == "binary ^(int 2, unary -(binary ^(name a, int 3)))");
     CHECK(tree_of("2^-a*3") == "binary *(binary ^(int 2, unary -(name a)), int 3)");
     CHECK(tree_of("a^b^c") == "binary ^(name a, binary ^(name b, name c))");
