@@ -16,7 +16,7 @@ std::string operation_name(const ir::Scene &scene, ShapeId id) {
     switch (shape.kind) {
     case ShapeKind::Library: return scene.shapes.libraries[shape.payload].name;
     case ShapeKind::Empty: return "empty";
-    case ShapeKind::Leaf: return "implicit";
+    case ShapeKind::Leaf: return shape.dims == 2 ? "implicit2" : "implicit";
     case ShapeKind::Union: return "union";
     case ShapeKind::Intersection: return "intersection";
     case ShapeKind::Complement: return "complement";
@@ -171,7 +171,8 @@ std::string region_text(const ir::Scene &scene, ShapeId id, Prover &prover) {
         case ir::RegionKind::Box: break;
         }
     if (everywhere(place.box)) return "everywhere";
-    return "aabb(" + point_text(place.box.lo) + ", " + point_text(place.box.hi) + ")";
+    return "aabb(" + point_text(place.box.lo, shape.dims) + ", " +
+           point_text(place.box.hi, shape.dims) + ")";
 }
 
 Explanation explained(const ir::Scene &scene, ShapeId id, Prover &prover, double total, bool worst,

@@ -15,7 +15,10 @@ std::string number_text(double x) {
 }
 std::string point_text(const std::array<double, 3> &p, int dims) {
     // What is nothing beside the others is the width of the cell where a search ended.
-    const double nothing = 1e-6 * std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+    double largest = 0;
+    for (const double x : p)
+        if (std::isfinite(x)) largest = std::max(largest, std::fabs(x));
+    const double nothing = 1e-6 * largest;
     std::string out = "[";
     for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
         out += (i > 0 ? ", " : "") + number_text(std::fabs(p[i]) < nothing ? 0 : p[i]);

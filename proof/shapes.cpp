@@ -216,6 +216,9 @@ Derived Prover::know_set(ShapeId id) {
 Derived Prover::know_displaced(ShapeId id) {
     const Shape shape = scene.shapes[id];
     Derived k = of_child(shape);
+    const auto less_region = [&](ShapeId s) {
+        return scene.shapes[s].kind == ShapeKind::Within ? scene.shapes[s].children[0] : s;
+    };
     if (shape.kind != ShapeKind::Displace && !k.fact.exact_outside && !k.failed &&
         k.fact.kind != FieldKind::Estimate) {
         bool grows = shape.kind == ShapeKind::Shell || number(shape.args[0]).hi > 0;
@@ -224,7 +227,7 @@ Derived Prover::know_displaced(ShapeId id) {
                     report(id, Code::LowerBound,
                            std::string(shape.kind == ShapeKind::Shell ? "a shell" : "an offset") +
                                " of a field that is only a lower bound of the distance"))
-                d->note("the field of " + operation_name(scene, shape.children[0]) +
+                d->note("the field of " + operation_name(scene, less_region(shape.children[0])) +
                         " is not the exact distance near edges; the result there is thinner or "
                         "less round than the number says")
                     .help("apply it to the exact parts first, then combine them");

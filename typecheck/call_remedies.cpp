@@ -244,8 +244,9 @@ std::string seed_text(const Interpreter &ev, Span place) {
 // The call around a place, or around the calls around it, that takes a function of the point.
 std::optional<Edit> point_edit(const Interpreter &ev, const std::string &name, Span place,
                                std::string &function) {
-    constexpr std::array<std::string_view, 8> takers = {"implicit", "displace", "distort", "paint",
-                                                        "repaint",  "cached",   "blend",   "taper"};
+    constexpr std::array<std::string_view, 9> takers = {"implicit", "implicit2", "displace",
+                                                        "distort",  "paint",     "repaint",
+                                                        "cached",   "blend",     "taper"};
     const std::string_view all = ev.sources[place.source].text;
     std::size_t at = place.begin;
     constexpr int most_calls = 20;

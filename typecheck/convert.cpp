@@ -311,7 +311,7 @@ Value convert(Interpreter &ev, const Value &v, const lang::TypeExpr &type, Span 
 
 // -- what builtins demand of their arguments
 
-static void want(Interpreter &ev, const Value &v, Span place, What what, std::string_view wanted) {
+void want(Interpreter &ev, const Value &v, Span place, What what, std::string_view wanted) {
     if (is_poison(v)) return;
     Diagnostic &d = report(ev, Code::TypeMismatch, place,
                            fmt::format("{} wants {}, this is {}", what, wanted, describe(ev, v)));
@@ -488,13 +488,6 @@ std::optional<std::vector<ir::ShapeId>> want_shapes(Interpreter &ev, const Value
         shapes.push_back(shape_of(item));
     }
     return shapes;
-}
-
-std::optional<ir::Region> want_region(Interpreter &ev, const Value &v, Span place, What what) {
-    if (v.kind == ValueKind::Region) return ev.regions[v.id];
-    want(ev, v, place, what,
-         "a region: `ball(r)`, `aabb(lo, hi)`, `tube(axis, r)` or `everywhere`");
-    return std::nullopt;
 }
 
 } // namespace fathom::typecheck

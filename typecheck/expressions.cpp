@@ -206,9 +206,7 @@ static Value eval_binary(Interpreter &ev, const File &ast, const lang::Binary &b
             ir::Region region = ev.regions[total.id];
             region.less.push_back(ev.regions[right.id]);
             ev.made += size * sizeof(ir::Region);
-            ev.regions.push_back(std::move(region));
-            total =
-                make_value(ValueKind::Region, static_cast<std::uint32_t>(ev.regions.size() - 1));
+            total = region_value(ev, std::move(region), std::min(total.size, right.size));
         } else {
             total = arithmetic(ev, op, total, right, whole, total_place, right_place);
         }

@@ -385,7 +385,7 @@ std::optional<ir::ShapeId> want_shape(Interpreter &ev, const Value &v, Span plac
 std::optional<std::vector<Value>> want_list(Interpreter &ev, const Value &v, Span place, What what);
 std::optional<std::vector<ir::ShapeId>> want_shapes(Interpreter &ev, const Value &v, Span place,
                                                     What what, int &dims);
-std::optional<ir::Region> want_region(Interpreter &ev, const Value &v, Span place, What what);
+Value region_value(Interpreter &ev, ir::Region region, int dims = 3); // 2: of flat shapes alone
 std::optional<ir::Material> want_material(Interpreter &ev, const Value &v, Span place, What what);
 Value list_value(Interpreter &ev, std::vector<Value> items);
 Value string_value(Interpreter &ev, std::string text);
@@ -463,10 +463,9 @@ int parameter_count(Interpreter &ev, const Value &function); // -1: any
 // One node for a call of a library shape: its name and numbers, with the claims that its body made
 // (semantics.md, 12).
 Value library_shape(Interpreter &ev, ir::Library library, const Value &body, Span origin);
-std::uint32_t intern_region(Interpreter &ev,
-                            const ir::Region &region); // index into Shapes::regions
-std::uint32_t intern_material(Interpreter &ev,
-                              const ir::Material &material); // index into Shapes::materials
+// Indices into Shapes::regions and Shapes::materials.
+std::uint32_t intern_region(Interpreter &ev, const ir::Region &region);
+std::uint32_t intern_material(Interpreter &ev, const ir::Material &material);
 
 // -- fields.cpp: functions of the point
 // The field as an expression of `point` (and `normal`), a graph node of one of `types`.
@@ -482,6 +481,7 @@ void add_numeric_builtins(std::vector<Builtin> &table);
 void add_list_builtins(std::vector<Builtin> &table);
 void add_shape_builtins(std::vector<Builtin> &table);
 void add_transform_builtins(std::vector<Builtin> &table);
+void add_region_builtins(std::vector<Builtin> &table);
 void add_scene_builtins(std::vector<Builtin> &table);
 void add_texture_builtins(std::vector<Builtin> &table);
 

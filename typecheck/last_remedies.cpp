@@ -409,4 +409,17 @@ void report_var_at_top(Interpreter &ev, const File &ast, const lang::Var &var, S
     d.help("write `let`", {{{place.source, place.begin, place.begin + 3}, "let"}});
 }
 
+void help_with_plane(const Interpreter &ev, Diagnostic &d, Span place) {
+    const std::string written = source_text(ev, place);
+    const std::size_t comma = written.rfind(',');
+    if (written.starts_with('[') && written.ends_with(']') && comma != written.npos) {
+        const auto at = static_cast<std::uint32_t>(place.begin + comma);
+        d.help("a flat shape lies in the xy plane, and its vectors have two parts",
+               {{{place.source, at, place.end - 1}, ""}});
+        return;
+    }
+    d.help("two of its three parts make a vec2: `.xy`, or `.xz` seen from above",
+           {{place, operand_source(ev, place) + ".xy"}});
+}
+
 } // namespace fathom::typecheck

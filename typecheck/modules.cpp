@@ -27,9 +27,7 @@ static void declare_constants(Interpreter &ev) {
     let("inf", number(std::numeric_limits<double>::infinity()));
     let("none", none());
     let("time", make_value(ValueKind::Field, ev.scene.graph.time().index));
-    ev.regions.push_back({});
-    let("everywhere",
-        make_value(ValueKind::Region, static_cast<std::uint32_t>(ev.regions.size() - 1)));
+    let("everywhere", region_value(ev, {}));
     declare_colors(ev);
 }
 
@@ -40,6 +38,7 @@ const std::vector<Builtin> &builtins() {
         add_list_builtins(t);
         add_shape_builtins(t);
         add_transform_builtins(t);
+        add_region_builtins(t);
         add_scene_builtins(t);
         add_texture_builtins(t);
         return t;

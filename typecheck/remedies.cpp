@@ -361,13 +361,8 @@ void help_with_value(Interpreter &ev, Diagnostic &d, const Value &v, lang::TypeN
     const bool list = written.starts_with('[') && written.ends_with(']');
     if (wanted == TypeName::Vec3 && list && is_numeric(v) && numeric_type(ev, v) == ir::Type::Vec2)
         d.help("a vec3 has three parts", {{{place.source, place.end - 1, place.end - 1}, ", 0"}});
-    if (wanted == TypeName::Vec2 && list && is_numeric(v) &&
-        numeric_type(ev, v) == ir::Type::Vec3) {
-        const std::size_t comma = written.rfind(',');
-        const auto at = static_cast<std::uint32_t>(place.begin + comma);
-        d.help("a flat shape lies in the xy plane, and its vectors have two parts",
-               {{{place.source, at, place.end - 1}, ""}});
-    }
+    if (wanted == TypeName::Vec2 && is_numeric(v) && numeric_type(ev, v) == ir::Type::Vec3)
+        help_with_plane(ev, d, place);
     if (wanted == TypeName::Float && is_function(v))
         d.help(ev.in_field > 0 ? "a function gives a number where it is called: `f(p)`"
                                : "a function gives a number where it is called, `f(x)`; a shape is "

@@ -124,6 +124,10 @@ Fix name_before_value(Interpreter &ev, std::uint32_t frame, const std::string &n
 void help_with_region(const Interpreter &ev, Diagnostic &d, const Value &v, Span place);
 // For a number with a fraction where a whole one is wanted.
 void help_with_whole(const Interpreter &ev, Diagnostic &d, const Value &v, Span place);
+// For a vec3 where a vec2 is wanted.
+void help_with_plane(const Interpreter &ev, Diagnostic &d, Span place);
+// Reports that something else was wanted there (convert.cpp), with the way to it.
+void want(Interpreter &ev, const Value &v, Span place, What what, std::string_view wanted);
 // For what is no shape beside `|` or `&`.
 void help_with_operand(Interpreter &ev, Diagnostic &d, const Value &v, bool united, Span place);
 // The `p` of GLSL's `sdBox(p, size)`, with its comma, in a call of one of the library's shapes.

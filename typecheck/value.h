@@ -34,7 +34,7 @@ enum class ValueKind : std::uint8_t {
     ImageField,  // id: scene images; num[0] the scale
     Shape,       // id: shapes; size 2 or 3
     Material,    // id: materials
-    Region,      // id: regions
+    Region,      // id: regions; size 2: of flat shapes alone, else 3
     Setting,     // id: settings (camera, light, …)
     Module       // id: modules
 };

@@ -143,6 +143,7 @@ constexpr Row names[] = {
     {"sun", "sunlight directionallight dirlight"},
     {"lighting", "ambientlight"},
     {"implicit", "frep levelset fromsdf"},
+    {"implicit2", "implicit2d implicitflat shape2 shape2d sdf2"},
     {"keyframes", "timeline"},
     {"ease_in_out", "easeinout"},
     {"smoothstep", "smootherstep"},

@@ -123,8 +123,8 @@ const std::string *type_of_name(const Place &place, const std::string &name) {
 }
 
 // What a function of the point is given to, as the only argument that is one.
-constexpr std::array<std::string_view, 5> of_the_point = {"implicit", "displace", "distort",
-                                                          "paint", "estimate"};
+constexpr std::array<std::string_view, 6> of_the_point = {"implicit", "implicit2", "displace",
+                                                          "distort",  "paint",     "estimate"};
 
 Kind kind_of_parameter(const Place &place, const Declaration &declared) {
     const lang::Ast &ast = place.read.syntax.ast;

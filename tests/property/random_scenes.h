@@ -166,7 +166,7 @@ class RandomScene {
     }
 
     TermPtr flat(int depth) {
-        if (depth <= 0 || dice_.chance(0.3)) switch (dice_.below(11)) {
+        if (depth <= 0 || dice_.chance(0.3)) switch (dice_.below(14)) {
             case 0: return term("circle(" + n(0.1, 0.8) + ")", {}, true);
             case 1: return term("rectangle(" + vec2(0.2, 1.4) + ")", {}, true);
             case 2: return term("ellipse(" + vec2(0.2, 0.8) + ")", {}, true);
@@ -179,6 +179,20 @@ class RandomScene {
             case 7: return term("segment(" + vec2(-1, 1) + ", " + vec2(-1, 1) + ", 0.2)", {}, true);
             case 8: return term("arc(0.7, " + n(0.5, 5) + ", 0.15)", {}, true);
             case 9: return term("ring(" + n(0.6, 1) + ", " + n(0.2, 0.5) + ")", {}, true);
+            case 10:
+                return term("implicit2(p => sin(" + n(2, 4) + " * p.x) * cos(2 * p.y) - " +
+                                n(0, 0.4) + ", within: ball(" + n(0.6, 1.4) +
+                                ", at: " + vec2(-0.3, 0.3) + "))",
+                            {}, true);
+            case 11: // steep in the corners
+                return term("implicit2(p => p.x^4 + p.x * p.y^2 - " + n(0.05, 0.3) +
+                                ", within: aabb([-1, -0.9], [0.8, 1.2])" +
+                                (dice_.chance(0.5) ? "" : " - ball(0.2)") + ")",
+                            {}, true);
+            case 12:
+                return term("implicit2(p => max(length(p - " + vec2(-0.3, 0.3) + ") - 0.8, " +
+                                n(0.2, 0.7) + " - length(p)))",
+                            {}, true);
             default:
                 return term("bezier(" + vec2(-1, 0) + ", " + vec2(-1, 1) + ", " + vec2(0, 1) +
                                 ", 0.15)",

@@ -105,13 +105,24 @@ static Value leaf_call(Interpreter &ev, const CallSite &site, std::vector<Value>
     return library_shape(ev, std::move(library), body, ev.scene.shapes[shape_of(body)].origin);
 }
 
-// implicit(f, within, lipschitz, estimate)
+// Whether a function says that its point is a vector of so many numbers.
+static bool takes_vec(const Interpreter &ev, const Value &f, int dims) {
+    if (f.kind != ValueKind::Closure) return false;
+    const Closure &closure = ev.closures[f.id];
+    const auto &parameters = closure.ast->functions[closure.function].parameters;
+    return parameters.size() == 1 && parameters[0].type &&
+           parameters[0].type->kind == lang::TypeExpr::Kind::Name &&
+           parameters[0].type->named == (dims == 2 ? lang::TypeName::Vec2 : lang::TypeName::Vec3);
+}
+
+// implicit(f, within, lipschitz, estimate) of a vec3; implicit2, of a vec2, is flat.
+template <int dims>
 static Value implicit_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     if (!is_function(args[0]) && !is_numeric(args[0])) {
         report(ev, Code::TypeMismatch, site.arg(0),
-               fmt::format("`implicit` wants a function of the point, this is {}",
+               fmt::format("`{}` wants a function of the point, this is {}", site.name,
                            describe(ev, args[0])))
-            .help("write `implicit(p => …)`");
+            .help(fmt::format("write `{}(p => …)`", site.name));
         return poison();
     }
     if (ev.in_field > 0) {
@@ -119,8 +130,19 @@ static Value implicit_call(Interpreter &ev, const CallSite &site, std::vector<Va
                "a shape cannot be made inside a function of the point");
         return poison();
     }
-    auto field =
-        apply_field(ev, args[0], {ev.scene.graph.point()}, Type::Float, site.arg(0), "`implicit`");
+    constexpr int other = 5 - dims;
+    if (takes_vec(ev, args[0], other)) {
+        const char *name = other == 2 ? "implicit2" : "implicit";
+        report(ev, Code::TypeMismatch, site.arg(0),
+               fmt::format("`{}` wants a function of a vec{}, this one takes a vec{}", site.name,
+                           dims, other))
+            .help(fmt::format("`{}` makes a {} of it", name,
+                              other == 2 ? "flat shape, to be extruded or revolved," : "solid"),
+                  {{site.callee, name}});
+        return poison();
+    }
+    auto field = apply_field(ev, args[0], {ev.scene.graph.point(ir::vector_type(dims))},
+                             Type::Float, site.arg(0), quoted(site.name));
     if (!field) return poison();
     ir::Shape leaf;
     leaf.kind = ShapeKind::Leaf;
@@ -144,16 +166,10 @@ static Value implicit_call(Interpreter &ev, const CallSite &site, std::vector<Va
         if (!e) return poison();
         leaf.estimate = *e;
     }
-    Value body = added(ev, std::move(leaf), site, 3);
+    Value body = added(ev, std::move(leaf), site, dims);
     if (!given(args[1])) return body;
-    auto region = want_region(ev, args[1], site.arg(1), "`within`");
-    if (!region) return poison();
-    if (region->kind == ir::RegionKind::Everywhere && region->less.empty()) return body;
-    ir::Shape within;
-    within.kind = ShapeKind::Within;
-    within.payload = intern_region(ev, *region);
-    within.children = {shape_of(body)};
-    return added(ev, std::move(within), site, 3);
+    auto region = want_region(ev, args[1], site.arg(1), "`within`", dims);
+    return region ? within_shape(ev, site, body, *region) : poison();
 }
 
 // cached(f, cell): the same field; its values may come from the noise cache
@@ -437,8 +453,11 @@ void add_shape_builtins(std::vector<Builtin> &table) {
     claims.push_back({"corners", true});
     add("_flat", claims, leaf_call<2>);
     add("implicit", {{"f"}, {"within", true}, {"lipschitz", true}, {"estimate", true}},
-        implicit_call,
+        implicit_call<3>,
         "the solid where a function of the point is below 0, inside the region `within`");
+    add("implicit2", {{"f"}, {"within", true}, {"lipschitz", true}, {"estimate", true}},
+        implicit_call<2>,
+        "the flat shape where a function of the point, a vec2, is below 0, inside `within`");
     add("cached", {{"f"}, {"cell"}}, cached_call,
         "the same field; its values may come from the noise cache with cells of that size");
     add("_union", {{"shapes"}}, union_call);

@@ -194,8 +194,8 @@ static Value taper_call(Interpreter &ev, const CallSite &site, std::vector<Value
     return added(ev, ir::tapered(ev.scene.graph, *s, *ratio, *ends[0], *ends[1], *axis), site, 3);
 }
 
-static Value within_shape(Interpreter &ev, const CallSite &site, const Value &shape,
-                          const ir::Region &region) {
+Value within_shape(Interpreter &ev, const CallSite &site, const Value &shape,
+                   const ir::Region &region) {
     if (region.kind == ir::RegionKind::Everywhere && region.less.empty()) return shape;
     ir::Shape within;
     within.kind = ShapeKind::Within;
@@ -212,14 +212,15 @@ static Value distort_call(Interpreter &ev, const CallSite &site, std::vector<Val
     if (!q) return poison();
     Value out = added(ev, ir::distorted(ev.scene.graph, *s, *q), site, args[0].size);
     if (!given(args[2])) return out;
-    auto region = want_region(ev, args[2], site.arg(2), "`within`");
+    auto region = want_region(ev, args[2], site.arg(2), "`within`", args[0].size);
     return region ? within_shape(ev, site, out, *region) : poison();
 }
 
 static Value within_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
     auto s = first_shape(ev, site, args);
-    auto region = want_region(ev, args[1], site.arg(1), "`within`");
-    return s && region ? within_shape(ev, site, args[0], *region) : poison();
+    if (!s) return poison();
+    auto region = want_region(ev, args[1], site.arg(1), "`within`", args[0].size);
+    return region ? within_shape(ev, site, args[0], *region) : poison();
 }
 
 template <ShapeKind kind>
@@ -379,77 +380,6 @@ static Value repeat_polar_call(Interpreter &ev, const CallSite &site, std::vecto
     return repeated(ev, site, r, *child, {ev.scene.graph.integer(*n)}, args[0].size);
 }
 
-// -- regions -------------------------------------------------------------------------------------
-
-static Value region_value(Interpreter &ev, ir::Region region) {
-    ev.regions.push_back(std::move(region));
-    return make_value(ValueKind::Region, static_cast<std::uint32_t>(ev.regions.size() - 1));
-}
-
-static bool positive_sizes(Interpreter &ev, const CallSite &site, ir::NodeId node, std::size_t i) {
-    ir::Graph &g = ev.scene.graph;
-    const std::string wanted = "a region needs a size above 0";
-    for (int k = 0; k < ir::components(g.type(node)); ++k) {
-        const ir::NodeId part = ir::components(g.type(node)) > 1 ? g.component(node, k) : node;
-        const std::optional<double> number = g.as_number(part);
-        if (!number) {
-            require(ev, g.make(Op::Less, {g.number(0), part}), site.arg(i), wanted);
-        } else if (!(*number > 0)) {
-            report(ev, Code::BadArgument, site.arg(i), wanted);
-            return false;
-        }
-    }
-    return true;
-}
-
-static Value ball_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
-    auto r = want_scalar_node(ev, args[0], site.arg(0), "`r`");
-    auto at = given(args[1]) ? want_vec_node(ev, args[1], 3, site.arg(1), "`at`")
-                             : std::optional(ev.scene.graph.vec3(0, 0, 0));
-    if (!r || !at || !positive_sizes(ev, site, *r, 0)) return poison();
-    ir::Region region;
-    region.kind = ir::RegionKind::Ball;
-    region.center = *at;
-    region.size = *r;
-    return region_value(ev, region);
-}
-
-static Value aabb_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
-    auto lo = want_vec_node(ev, args[0], 3, site.arg(0), "`lo`"),
-         hi = want_vec_node(ev, args[1], 3, site.arg(1), "`hi`");
-    if (!lo || !hi) return poison();
-    ir::Graph &g = ev.scene.graph;
-    ir::Region region;
-    region.kind = ir::RegionKind::Box;
-    const ir::NodeId half = g.number(0.5);
-    region.center = g.add({g.mul(*lo, half), g.mul(*hi, half)});
-    auto size = node_in_range(ev, g.sub(*hi, *lo), site.call);
-    if (!size || !positive_sizes(ev, site, *size, 1)) return poison();
-    region.size = *size;
-    return region_value(ev, region);
-}
-
-static Value tube_call(Interpreter &ev, const CallSite &site, std::vector<Value> &args) {
-    auto axis = want_vec_node(ev, args[0], 3, site.arg(0), "`axis`");
-    auto r = want_scalar_node(ev, args[1], site.arg(1), "`r`");
-    if (!axis || !r || !positive_sizes(ev, site, *r, 1)) return poison();
-    ir::Region region;
-    region.kind = ir::RegionKind::Tube;
-    region.size = *r;
-    region.axis = -1;
-    if (ev.scene.graph.is_constant(*axis)) {
-        const ir::Constant c = ev.scene.graph.constant_of(*axis);
-        for (std::size_t i = 0; i < 3; ++i)
-            if (c.value[i] != 0 && c.value[(i + 1) % 3] == 0 && c.value[(i + 2) % 3] == 0)
-                region.axis = int(i);
-    }
-    if (region.axis < 0) {
-        report(ev, Code::BadArgument, site.arg(0), "a tube runs along X, Y or Z");
-        return poison();
-    }
-    return region_value(ev, region);
-}
-
 void add_transform_builtins(std::vector<Builtin> &table) {
     auto add = [&](const char *name, std::vector<BuiltinParameter> parameters, auto call,
                    const char *doc = "") {
@@ -472,9 +402,6 @@ void add_transform_builtins(std::vector<Builtin> &table) {
     add("_repeat", {{"s"}, {"cell"}, {"count", true}, {"copies", true}}, repeat_call);
     add("_repeat_polar", {{"s"}, {"n"}, {"axis"}, {"copies", true}}, repeat_polar_call);
     add("_repeat_mirror", {{"s"}, {"cell"}}, repeat_mirror_call);
-    add("ball", {{"r"}, {"at", true}}, ball_call, "a region: the ball of radius r");
-    add("aabb", {{"lo"}, {"hi"}}, aabb_call, "a region: the box between two corners");
-    add("tube", {{"axis"}, {"r"}}, tube_call, "a region: the endless cylinder round an axis");
 }
 
 } // namespace fathom::typecheck

@@ -108,6 +108,8 @@ const std::vector<Entry> built_in{
     {"hide", "sphere(1) | sphere(2).hide()"},
     {"only", "sphere(1).only()"},
     {"lipschitz", "sphere(lipschitz(box(1).twist(0.5)))"},
+    {"implicit2", "implicit2(p => 0.5 * length(p) - 1, lipschitz: 1).extrude(1)"},
+    {"implicit2", "implicit2(p => 0.5 * length(p) - 1, estimate: 1).extrude(1)"},
     {"ball", "implicit(p => p.x, within: ball(1, at: [1, 2, 3]))"},
     {"aabb", "implicit(p => p.x, within: aabb([-1, -2, -1], [1, 2, 1]))"},
     {"tube", "implicit(p => p.x, within: tube([0, 1, 0], 1))"},
