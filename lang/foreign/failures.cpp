@@ -39,6 +39,7 @@ bool ForeignSyntax::foreign_operand(Wanted wanted, Index at) {
         return true;
     }
     if (found == Tok::For && wanted == Wanted::Expression) {
+        if (loop_among_entries(at)) return true;
         diagnostics_.add(Code::WrongPlace, span(at), "a `for` has no value")
             .help("write `[for … { … }]` for a list, `union { for … { … } }` for a shape");
         return true;
@@ -95,6 +96,7 @@ bool ForeignSyntax::foreign_operand(Wanted wanted, Index at) {
 // In brackets, where an element ended and neither a comma nor the bracket's end follows.
 bool ForeignSyntax::foreign_list(Index at) {
     const Tok found = kind(at);
+    if (found == Tok::Comma && loop_among_entries(at)) return true;
     if (found == Tok::Colon && (foreign_scope(at) || foreign_slice(at))) return true;
     if (found == Tok::Colon) {
         foreign(span(at), "a range is written with `..`, or `..=` with its end")

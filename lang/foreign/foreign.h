@@ -220,7 +220,9 @@ class ForeignSyntax : protected TokenReading {
     bool lisp_call(Index at);
     bool lisp_let(Index open);
     bool asks_for_type(Index at);
+    std::string joined_list(Index open) const;
     bool list_spread(Index at);
+    bool loop_among_entries(Index at);
     bool counted_block(Index first, Index at);
     bool range_in_parentheses(Index at);
     bool foreign_for_words(Index at);
@@ -290,10 +292,13 @@ class ForeignSyntax : protected TokenReading {
     bool label_of_param(Index at);
     bool words_of_range(Index first, Index at);
 
-    // Words and blocks of theirs (words.cpp).
-    void withdraw_quotes(Index first);
+    // Bodies without braces (bodies.cpp).
+    bool begins_body(Index at) const;
     bool indented_body(Index colon, std::vector<Edit> &edits);
     void foreign_colon(Index at);
+
+    // Words and blocks of theirs (words.cpp).
+    void withdraw_quotes(Index first);
     void foreign_choice(Index start, Index at);
     Index value_start(Index first, Index at) const;
     void foreign_pipe(Index at);

@@ -45,22 +45,20 @@ std::string joined_string(std::string_view quoted, std::string_view opening) {
     return any ? sum : std::string();
 }
 
-// `[*a, 3]`, `[...a, 3]`, `[each a, 3]`, at the sign: `concat(a, [3])`.
-bool ForeignSyntax::list_spread(Index at) {
-    const Index open = enclosing(at), close = match(open);
-    if (!spreads(text(at)) || !is_one_of(kind(open), {Tok::ListOpen, Tok::FreshListOpen}) ||
-        (at != open + 1 && kind(at - 1) != Tok::Comma))
-        return false;
+// A list in which lists are spread or loops stand beside entries, as `concat(a, [3], [for …])`; empty
+// where an entry is missing.
+std::string ForeignSyntax::joined_list(Index open) const {
+    const Index close = match(open);
     std::vector<std::string> lists;
     bool row = false; // the last one is of single values
     for (Index first = open + 1, i = first; i <= close; i = match(i) > i ? match(i) + 1 : i + 1) {
         if (i < close && kind(i) != Tok::Comma) continue;
-        const bool whole = spreads(text(first));
-        const Index begin = whole ? first + 1 : first;
-        if (begin >= i) return false;
+        const bool spread = spreads(text(first)), whole = spread || kind(first) == Tok::For;
+        const Index begin = spread ? first + 1 : first;
+        if (begin >= i) return {};
         const std::string part(text(token(begin).begin, token(i - 1).end));
         if (whole)
-            lists.push_back(part);
+            lists.push_back(spread ? part : "[" + part + "]");
         else if (row)
             lists.back().insert(lists.back().size() - 1, ", " + part);
         else
@@ -70,10 +68,40 @@ bool ForeignSyntax::list_spread(Index at) {
     }
     std::string joined = lists[0];
     for (std::size_t k = 1; k < lists.size(); ++k) joined += ", " + lists[k];
-    if (lists.size() > 1) joined = "concat(" + joined + ")";
+    return lists.size() > 1 ? "concat(" + joined + ")" : joined;
+}
+
+// `[*a, 3]`, `[...a, 3]`, `[each a, 3]`, at the sign.
+bool ForeignSyntax::list_spread(Index at) {
+    const Index open = enclosing(at), close = match(open);
+    if (!spreads(text(at)) || !is_one_of(kind(open), {Tok::ListOpen, Tok::FreshListOpen}) ||
+        (at != open + 1 && kind(at - 1) != Tok::Comma))
+        return false;
+    const std::string joined = joined_list(open);
+    if (joined.empty()) return false;
     failed_ = close;
     foreign(span(at), "a list is not spread out: lists are joined by `concat`")
         .help(to_write(joined), {{span(open, close), joined}});
+    return true;
+}
+
+// `[for i in 0..3 { i }, 7]`, at the comma, and `[7, for i in 0..3 { i }]`, at the loop.
+bool ForeignSyntax::loop_among_entries(Index at) {
+    const Index open = enclosing(at), close = match(open);
+    if (!is_one_of(kind(open), {Tok::ListOpen, Tok::FreshListOpen}) || close <= at ||
+        kind(kind(at) == Tok::For ? at - 1 : open + 1) !=
+            (kind(at) == Tok::For ? Tok::Comma : Tok::For))
+        return false;
+    const bool last = at + 1 == close; // `[for i in 0..3 { i }, ]`
+    const std::string joined = last ? std::string() : joined_list(open);
+    if (joined.empty() && !last) return false;
+    failed_ = close;
+    Diagnostic &d =
+        diagnostics_.add(Code::SyntaxError, span(at), "a list is made by one loop, or of entries");
+    if (last)
+        d.help("leave the `,` away", {{span(at), ""}});
+    else
+        d.help("lists are joined by `concat(a, b)`", {{span(open, close), joined}});
     return true;
 }
 
