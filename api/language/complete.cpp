@@ -122,9 +122,15 @@ const std::string *type_of_name(const Place &place, const std::string &name) {
     return found == types->end() ? nullptr : &found->second;
 }
 
-// What a function of the point is given to, as the only argument that is one.
-constexpr std::array<std::string_view, 6> of_the_point = {"implicit", "implicit2", "displace",
-                                                          "distort",  "paint",     "estimate"};
+// What the point is in a function that such a call is given, as the only argument that is one.
+Kind point_in(const std::optional<OpenCall> &call) {
+    constexpr std::array<std::string_view, 5> of_the_point = {"implicit", "displace", "distort",
+                                                              "paint", "estimate"};
+    if (call && call->name == "implicit2") return Kind::Vec2;
+    return call && std::ranges::find(of_the_point, call->name) != of_the_point.end()
+               ? Kind::Vec3
+               : Kind::Unknown;
+}
 
 Kind kind_of_parameter(const Place &place, const Declaration &declared) {
     const lang::Ast &ast = place.read.syntax.ast;
@@ -134,10 +140,7 @@ Kind kind_of_parameter(const Place &place, const Declaration &declared) {
                 return parameter.type->kind == lang::TypeExpr::Kind::List
                            ? Kind::List
                            : kind_of_type(parameter.type->name);
-    const auto call = call_around(place.read.syntax, declared.at.begin);
-    return call && std::ranges::find(of_the_point, call->name) != of_the_point.end()
-               ? Kind::Vec3
-               : Kind::Unknown;
+    return point_in(call_around(place.read.syntax, declared.at.begin));
 }
 
 constexpr int most_names = 8; // that stand for each other
@@ -170,9 +173,8 @@ Kind kind_of_name(const Place &place, const std::string &name, int depth) {
     for (std::size_t i = place.before; i-- > 1;) { // in a text that is no tree yet
         if (place.tokens()[i].kind != Tok::FatArrow || place.text(place.tokens()[i - 1]) != name)
             continue;
-        const auto call = call_around(place.read.syntax, place.tokens()[i - 1].begin);
-        if (call && std::ranges::find(of_the_point, call->name) != of_the_point.end())
-            return Kind::Vec3;
+        const Kind point = point_in(call_around(place.read.syntax, place.tokens()[i - 1].begin));
+        if (point != Kind::Unknown) return point;
         break;
     }
     if (const Constant *constant = constant_named(place.workspace, name))

@@ -166,10 +166,13 @@ TEST_CASE("completion offers the parts that a vector has, and functions that tak
     Client client;
     client.open("fn knob(r: float) = sphere(r)\nlet v = vec2(1, 2)\nlet q = v.\nlet r = [1, 2].\n"
                 "let t = [1, 2, 3].\nlet u = 1.5.\nimplicit(p => p.\n");
-    const auto parts = [&](int line, int character) {
+    const std::string flat = "file:///scenes/flat.sdf";
+    client.open("implicit2(q => q.\n", flat);
+    const auto parts = [&](int line, int character,
+                           const std::string &uri = "file:///scenes/a.sdf") {
         std::string letters;
         for (const Json &item :
-             client.result("textDocument/completion", Client::at(line, character))) {
+             client.result("textDocument/completion", Client::at(line, character, uri))) {
             const std::string label = item.at("label");
             if (label.size() == 1 && std::string("xyzw").find(label) != std::string::npos)
                 letters += label;
@@ -181,6 +184,7 @@ TEST_CASE("completion offers the parts that a vector has, and functions that tak
     CHECK(parts(3, 15) == "xy");
     CHECK(parts(4, 18) == "xyz");
     CHECK(parts(6, 16) == "xyz");
+    CHECK(parts(0, 17, flat) == "xy");
 }
 
 // A field whose proof takes seconds.
