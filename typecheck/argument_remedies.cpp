@@ -312,14 +312,6 @@ class Remedy {
         return true;
     }
 
-    // `union(a, b, smooth: 0.2)`.
-    bool joins_smoothly(std::string_view name) const {
-        const bool joins =
-            function_ == "union" || function_ == "intersection" || function_ == "difference";
-        return joins && (name == "smooth" || name == "k" || name == "radius" || name == "r" ||
-                         name == "blend" || name == "smoothness" || name == "fillet");
-    }
-
     // What is said otherwise, or set elsewhere.
     bool elsewhere(std::string_view name, std::size_t i) {
         const bool camera = function_ == "camera";
@@ -387,16 +379,11 @@ class Remedy {
             say(fmt::format("for `{}` there is `exponent`, from 1 (dull) to 1000 (glossy), and "
                             "`specular`, the highlight's colour",
                             name));
-        } else if (joins_smoothly(name) && args_[i].value.kind != ValueKind::Bool &&
-                   args_.size() > 1 && &args_[i] == &args_.back()) {
-            const std::string smooth = "smooth_" + std::string(function_);
-            const std::string value = source_text(ev_, args_[i].span);
-            say(fmt::format("write `{}({}, …)`", smooth, value));
-            fix_.edits.push_back({callee_, smooth});
-            const Span first = whole_argument(args_[0]);
-            if (first.begin > callee_.end)
-                fix_.edits.push_back({{first.source, first.begin, first.begin}, value + ", "});
-            leave(i);
+        } else if (auto smooth = smooth_form(ev_, function_, args_, i, callee_);
+                   !smooth.edits.empty()) {
+            say(smooth.message);
+            fix_.edits.insert(fix_.edits.end(), smooth.edits.begin(), smooth.edits.end());
+            if (i > 0) leave(i);
         } else if (name == "within" && function_ != "within") {
             say("a region stands behind the whole: `.within(ball(3))`");
         } else

@@ -422,4 +422,28 @@ void help_with_plane(const Interpreter &ev, Diagnostic &d, Span place) {
            {{place, operand_source(ev, place) + ".xy"}});
 }
 
+Fix smooth_form(const Interpreter &ev, std::string_view function, std::span<const Argument> args,
+                std::size_t at, Span callee) {
+    constexpr std::array<std::string_view, 3> joins = {"union", "intersection", "difference"};
+    constexpr std::array<std::string_view, 7> widths = {"smooth", "k",          "radius", "r",
+                                                        "blend",  "smoothness", "fillet"};
+    const Argument &width = args[at];
+    const bool last = at > 0 && at + 1 == args.size();
+    const bool first = at == 0 && args.size() > 1 && args[1].trailing;
+    if (std::ranges::find(joins, function) == joins.end() ||
+        std::ranges::find(widths, width.name->text) == widths.end() ||
+        width.value.kind == ValueKind::Bool || (!last && !first))
+        return {};
+    const std::string value = source_text(ev, width.span);
+    const std::string smooth = "smooth_" + std::string(function);
+    Fix fix{fmt::format("write `{}({}{}`", smooth, value, first ? ") { … }" : ", …)"),
+            {{callee, smooth}}};
+    const Span place = whole_argument(args[0]);
+    if (first)
+        fix.edits.push_back({{place.source, place.begin, width.span.begin}, ""});
+    else if (place.begin > callee.end)
+        fix.edits.push_back({{place.source, place.begin, place.begin}, value + ", "});
+    return fix;
+}
+
 } // namespace fathom::typecheck

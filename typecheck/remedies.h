@@ -124,6 +124,10 @@ Fix name_before_value(Interpreter &ev, std::uint32_t frame, const std::string &n
 void help_with_region(const Interpreter &ev, Diagnostic &d, const Value &v, Span place);
 // For a number with a fraction where a whole one is wanted.
 void help_with_whole(const Interpreter &ev, Diagnostic &d, const Value &v, Span place);
+// `union(a, b, smooth: 0.2)`, `union(r: 2) { a; b }`: the smooth form, without the edit that leaves a
+// last argument away; no edits: it is not that.
+Fix smooth_form(const Interpreter &ev, std::string_view function, std::span<const Argument> args,
+                std::size_t at, Span callee);
 // For a vec3 where a vec2 is wanted.
 void help_with_plane(const Interpreter &ev, Diagnostic &d, Span place);
 // Reports that something else was wanted there (convert.cpp), with the way to it.

@@ -225,11 +225,12 @@ bool ForeignSyntax::foreign_loop(Index at) {
     if (kind(i) == Tok::Name && kind(i + 1) == Tok::In) return propose(inside(i, close));
     Index colon = i; // `const auto &r : radii`
     while (colon < close && !is_one_of(kind(colon), {Tok::Colon, Tok::Assign, Tok::End})) ++colon;
-    if (kind(colon) == Tok::Colon && kind(colon - 1) == Tok::Name && colon + 1 < close)
+    const bool typed = kind(colon) == Tok::Colon && kind(colon + 2) == Tok::Assign; // `i: i32 = 0`
+    if (!typed && kind(colon) == Tok::Colon && kind(colon - 1) == Tok::Name && colon + 1 < close)
         return propose(std::string(text(colon - 1)) + " in " + inside(colon + 1, close));
     while (i < close && kind(i + 1) != Tok::Assign) ++i;
     if (i >= close || kind(i) != Tok::Name) return true;
-    const std::string name(text(i));
+    const std::string name(text(typed ? colon - 1 : i));
     const Index value = i + 2, end_value = find(value, close, Tok::End);
     if (end_value == close) {
         if (kind(value) != Tok::ListOpen) return propose(name + " in " + inside(value, close));
