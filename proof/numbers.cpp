@@ -13,12 +13,29 @@ std::string number_text(double x) {
     if (x == 0 || std::fabs(x) < 1e-12) return "0";
     return fmt::format("{:.3g}", x);
 }
-std::string point_text(const std::array<double, 3> &p, int dims) {
-    // What is nothing beside the others is the width of the cell where a search ended.
+namespace {
+
+// What is less than `nothing` is 0.
+std::string written_point(const std::array<double, 3> &p, int dims, int digits, double nothing) {
+    std::string out = "[";
+    for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
+        out += fmt::format("{}{:.{}g}", i > 0 ? ", " : "", std::fabs(p[i]) < nothing ? 0.0 : p[i],
+                           digits);
+    return out + "]";
+}
+
+// What is nothing beside the others is the width of the cell where a search ended.
+double width_of_cell(const std::array<double, 3> &p) {
     double largest = 0;
     for (const double x : p)
         if (std::isfinite(x)) largest = std::max(largest, std::fabs(x));
-    const double nothing = 1e-6 * largest;
+    return std::max(1e-6 * largest, 1e-7);
+}
+
+} // namespace
+
+std::string point_text(const std::array<double, 3> &p, int dims) {
+    const double nothing = width_of_cell(p);
     std::string out = "[";
     for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
         out += (i > 0 ? ", " : "") + number_text(std::fabs(p[i]) < nothing ? 0 : p[i]);
@@ -37,15 +54,10 @@ std::pair<std::string, std::string> two_points(const std::array<double, 3> &a,
                                                const std::array<double, 3> &b, int dims) {
     constexpr int all_digits = 17;
     std::pair<std::string, std::string> out{point_text(a, dims), point_text(b, dims)};
-    for (int digits = 4; digits <= all_digits && out.first == out.second; ++digits) {
-        const auto written = [&](const std::array<double, 3> &p) {
-            std::string text = "[";
-            for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
-                text += fmt::format("{}{:.{}g}", i > 0 ? ", " : "", p[i], digits);
-            return text + "]";
-        };
-        out = {written(a), written(b)};
-    }
+    for (const double nothing : {std::min(width_of_cell(a), width_of_cell(b)), 0.0})
+        for (int digits = 4; digits <= all_digits && out.first == out.second; ++digits)
+            out = {written_point(a, dims, digits, nothing),
+                   written_point(b, dims, digits, nothing)};
     return out;
 }
 
