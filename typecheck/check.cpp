@@ -244,7 +244,12 @@ void add_fields(Interpreter &ev, std::uint32_t frame) {
     }
 }
 
-// The last function of the file that gives a number for a point, by what is written of it.
+bool is_flat_field(const lang::Function &f) {
+    return f.parameters[0].type->named == lang::TypeName::Vec2;
+}
+
+// The last function of the file that gives a number for a point, by what is written of it; one of a
+// vec2 where there is none of a vec3.
 const lang::Function *last_field(const File &ast) {
     const lang::Function *out = nullptr;
     for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
@@ -254,7 +259,9 @@ const lang::Function *last_field(const File &ast) {
         if (f.parameters.size() != 1 || !f.result || f.result->named != lang::TypeName::Float)
             continue;
         const lang::TypeExpr *point = f.parameters[0].type;
-        if (point && point->named == lang::TypeName::Vec3) out = &f;
+        if (point && (point->named == lang::TypeName::Vec3 ||
+                      (point->named == lang::TypeName::Vec2 && (!out || is_flat_field(*out)))))
+            out = &f;
     }
     return out;
 }
@@ -295,7 +302,9 @@ void report_no_shape(Interpreter &ev, const File &ast, std::uint32_t frame) {
     if (!shape.empty())
         add(std::string(shape));
     else if (const lang::Function *field = last_field(ast))
-        add(fmt::format("implicit({}, within: ball(3))", field->name->text));
+        add(is_flat_field(*field)
+                ? fmt::format("implicit2({}, within: ball(3)).extrude(1)", field->name->text)
+                : fmt::format("implicit({}, within: ball(3))", field->name->text));
 }
 
 void build_scene(Interpreter &ev, const std::vector<Contribution> &contributions, const File &ast,

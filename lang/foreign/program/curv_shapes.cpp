@@ -112,15 +112,20 @@ std::optional<Written> Writer::curv_shape(const std::string &name, const Node &a
 Written Writer::curv_field(const Node &record) {
     const Node *dist = part_of(record, "dist"), *box = part_of(record, "bbox");
     if (!dist || dist->is != Is::Lambda || dist->names.empty()) throw Unsure{};
-    if (part_of(record, "is_2d") && !part_of(record, "is_3d")) throw Unsure{};
+    const auto says = [&](std::string_view key) {
+        const Node *said = part_of(record, key);
+        return said && !is_named(*said, "false");
+    };
+    const bool flat = says("is_2d") && !says("is_3d");
     for (const std::string &key : record.names)
         if (key != "dist" && key != "bbox" && key != "is_3d" && key != "is_2d" && key != "colour")
             throw Unsure{};
     scopes_.emplace_back();
     if (dist->names.size() == 1) {
+        if (flat) throw Unsure{}; // its point has a height, too
         scopes_.back().names[dist->names[0]] = {"p", as_call, Kind::Vector};
     } else {
-        constexpr std::array<const char *, 4> parts = {"p.x", "p.y", "p.z", "time"};
+        const std::array<const char *, 4> parts = {"p.x", "p.y", flat ? "0" : "p.z", "time"};
         if (dist->names.size() != 4) throw Unsure{};
         for (std::size_t i = 0; i < 4; ++i)
             scopes_.back().names[dist->names[i]] = {parts[i], as_call, Kind::Number};
@@ -130,8 +135,14 @@ Written Writer::curv_field(const Node &record) {
     std::string within = "everywhere";
     if (box) {
         if (box->is != Is::List || box->parts.size() != 2) throw Unsure{};
-        within = call_text("aabb", {text(box->parts[0]), text(box->parts[1])});
+        const auto corner = [&](Node at) {
+            if (flat && (at.is != Is::List || at.parts.size() != 3)) throw Unsure{};
+            if (flat) at.parts.pop_back();
+            return text(at);
+        };
+        within = call_text("aabb", {corner(box->parts[0]), corner(box->parts[1])});
     }
+    if (flat) return {"implicit2(p => " + field + ", within: " + within + ")", as_call, Kind::Flat};
     return solid_of_curv("implicit(p => " + field + ", within: " + within + ")");
 }
 

@@ -104,7 +104,8 @@ class LispReader {
         if (word.empty() || word.find_first_of("{}\"'`@~") != std::string_view::npos)
             throw Unsure{};
         const std::size_t slash = word.find('/', 1);
-        if (slash != std::string_view::npos && slash + 1 < word.size()) // `tau/4`
+        if (slash != std::string_view::npos && slash + 1 < word.size() &&
+            !word.starts_with("shape/")) // `tau/4`; Bauble's `shape/2d` is one name
             return node(Is::Binary, "/",
                         {plain(word.substr(0, slash)), plain(word.substr(slash + 1))});
         return plain(word);

@@ -108,6 +108,7 @@ Written Writer::lisp(const Node &n) {
     const Form f = form_of(n);
     if (const auto made = lisp_joined(head, n)) return *made;
     if (const auto made = lisp_solid(head, f)) return *made;
+    if (const auto made = lisp_profile(head, f)) return *made;
     if (const auto made = lisp_change(head, n, f)) return *made;
     throw Unsure{};
 }
@@ -141,10 +142,30 @@ std::optional<Written> Writer::lisp_number(const std::string &head, const Node &
         const Written w = lisp(n.parts[1]);
         return Written{wrapped(w, as_call) + " ^ 2", 11, Kind::Number};
     }
+    if (head == "expt" && n.parts.size() == 3)
+        return Written{lisp_text(n.parts[1], as_call) + " ^ " + lisp_text(n.parts[2], as_call), 11,
+                       Kind::Number};
     if (std::ranges::find(same, head) == same.end()) return std::nullopt;
     std::vector<std::string> arguments;
     for (std::size_t i = 1; i < n.parts.size(); ++i) arguments.push_back(lisp_text(n.parts[i]));
     return Written{call_text(head, arguments), as_call, Kind::Number};
+}
+
+// `(lambda-shape (x y z) e)`, `(shape/3d e)` of the point `p`: a field of one's own.
+Written Writer::lisp_field(const Node &n, bool flat) {
+    const bool by_point = n.parts[0].text != "lambda-shape";
+    if (n.parts.size() != (by_point ? 2u : 3u)) throw Unsure{};
+    scopes_.emplace_back();
+    if (by_point) scopes_.back().names["p"] = {"p", as_call, Kind::Vector};
+    for (const Node &axis : by_point ? std::vector<Node>() : n.parts[1].parts) {
+        if (axis.text != "x" && axis.text != "y" && axis.text != "z") throw Unsure{};
+        if (!flat || axis.text != "z")
+            scopes_.back().names[axis.text] = {"p." + axis.text, as_call, Kind::Number};
+    }
+    const std::string arguments = "(p => " + lisp_text(n.parts.back()) + ", within: everywhere)";
+    scopes_.pop_back();
+    if (flat) return {"implicit2" + arguments, as_call, Kind::Flat};
+    return solid_of_lisp("implicit" + arguments);
 }
 
 std::optional<Written> Writer::lisp_joined(const std::string &head, const Node &n) {
@@ -164,16 +185,9 @@ std::optional<Written> Writer::lisp_joined(const std::string &head, const Node &
         scopes_.pop_back();
         return solid_of_lisp("union([for " + name + " in " + range + " { " + body + " }])");
     }
-    if (head == "lambda-shape" && n.parts.size() == 3) {
-        scopes_.emplace_back();
-        for (const Node &axis : n.parts[1].parts) {
-            if (axis.text != "x" && axis.text != "y" && axis.text != "z") throw Unsure{};
-            scopes_.back().names[axis.text] = {"p." + axis.text, as_call, Kind::Number};
-        }
-        const std::string field = lisp_text(n.parts[2]);
-        scopes_.pop_back();
-        return solid_of_lisp("implicit(p => " + field + ", within: everywhere)");
-    }
+    if ((head == "lambda-shape" && n.parts.size() == 3) || head == "shape/3d")
+        return lisp_field(n, false);
+    if (head == "shape/2d") return lisp_field(n, true);
     if (head != "union" && head != "intersect" && head != "intersection" && head != "subtract" &&
         head != "difference" && head != "blend")
         return std::nullopt;
@@ -257,6 +271,31 @@ std::optional<Written> Writer::lisp_solid(const std::string &name, const Form &f
     return std::nullopt;
 }
 
+// `(extrude z 20 s)`, in either order, `(extrude-z s 0 1)`, `(revolve y s)`, `(revolve-y s)`.
+std::optional<Written> Writer::lisp_profile(const std::string &name, const Form &f) {
+    const auto of = [&](const Node &flat) {
+        Written w = head_of(flat) == "lambda-shape" ? lisp_field(flat, true) : lisp(flat);
+        if (w.kind != Kind::Flat && w.kind != Kind::Unknown) throw Unsure{};
+        return wrapped(w, as_call) + ".";
+    };
+    const std::size_t count = f.rest.size();
+    const std::string axis = f.axes.size() == 1 ? f.axes[0].first : "";
+    if (!f.named.empty()) return std::nullopt;
+    if (name == "extrude" && axis == "Z" && count == 2) {
+        const Written first = lisp(*f.rest[0]);
+        const Written half = first.kind == Kind::Number ? first : lisp(*f.rest[1]);
+        return solid_of_lisp(of(*f.rest[first.kind == Kind::Number ? 1 : 0]) + "extrude(2 * " +
+                             wrapped(half, 10) + ")");
+    }
+    if (name == "extrude-z" && axis.empty() && count == 3)
+        return solid_of_lisp(of(*f.rest[0]) + "extrude(" + lisp_text(*f.rest[2]) + " - " +
+                             lisp_text(*f.rest[1], 9) + ").translate(z: (" + lisp_text(*f.rest[1]) +
+                             " + " + lisp_text(*f.rest[2]) + ") / 2)");
+    if (count == 1 && ((name == "revolve" && axis == "Y") || (name == "revolve-y" && axis.empty())))
+        return solid_of_lisp(of(*f.rest[0]) + "revolve()");
+    return std::nullopt;
+}
+
 // `(rotate s y 0.5)`, `(move s x 10 y 5)`, `(move-x s 10)`.
 std::optional<Written> Writer::lisp_change(const std::string &name, const Node &n, const Form &f) {
     if (f.rest.empty()) return std::nullopt;
@@ -316,11 +355,6 @@ std::optional<Written> Writer::lisp_change(const std::string &name, const Node &
         if (base == "reflect") return changed("reflect(" + axis + ")");
         return std::nullopt;
     }
-    if (name == "extrude-z" && count == 3)
-        return Written{head + "extrude(" + lisp_text(*f.rest[2]) + " - " +
-                           lisp_text(*f.rest[1], 9) + ").translate(z: (" + at(1) + " + " + at(2) +
-                           ") / 2)",
-                       as_call, Kind::Solid};
     if (name == "move" || name == "rotate" || name == "scale") {
         if (f.axes.empty()) {
             if (count != 2 || name == "rotate") return std::nullopt;

@@ -78,7 +78,7 @@ struct Statement {
     Node value;
     std::vector<Statement> body, otherwise;
     std::string comment;
-    bool decorated = false;
+    int decorated = 0;
 };
 
 std::vector<Statement> read_script(const std::vector<Piece> &pieces, bool python);
@@ -154,6 +154,8 @@ class Writer {
     Written lisp_own(const Node &n);
     std::optional<Written> lisp_number(const std::string &head, const Node &n);
     std::optional<Written> lisp_joined(const std::string &head, const Node &n);
+    Written lisp_field(const Node &n, bool flat);
+    std::optional<Written> lisp_profile(const std::string &name, const Form &f);
     std::optional<Written> lisp_solid(const std::string &name, const Form &f);
     std::optional<Written> lisp_change(const std::string &name, const Node &n, const Form &f);
 

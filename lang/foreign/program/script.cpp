@@ -112,8 +112,7 @@ class Reader : PieceReader {
             const std::string by = name();
             if (by != "sdf3" && by != "sdf2") throw Unsure{};
             if (!sees("def")) throw Unsure{};
-            s.decorated = by == "sdf3";
-            if (!s.decorated) throw Unsure{};
+            s.decorated = by == "sdf3" ? 3 : 2;
         }
         if (takes("def")) {
             s.does = Does::Function;

@@ -308,13 +308,15 @@ std::string Writer::parameters(const Statement &s) {
 
 // `def f(): def g(p): …; return g` below a decorator: a shape of a field.
 bool Writer::function_of_points(const Statement &s) {
-    if (!s.decorated) return false;
+    if (s.decorated == 0) return false;
     if (s.body.size() != 2 || s.body[0].does != Does::Function || s.body[1].does != Does::Return ||
         !is_named(s.body[1].value, s.body[0].name) || s.body[0].names.size() != 1)
         throw Unsure{};
     const std::string ours = declare(s.name, Kind::Function);
     scopes_.emplace_back();
-    const std::string head = "fn " + ours + "(" + parameters(s) + ") -> shape = implicit(";
+    const std::string makes =
+        s.decorated == 2 ? ") -> shape2 = implicit2(" : ") -> shape = implicit(";
+    const std::string head = "fn " + ours + "(" + parameters(s) + makes;
     scopes_.emplace_back();
     line(head + parameters(s.body[0]) + " => {");
     const bool was = shown_;
