@@ -266,7 +266,8 @@ FieldBound search_cells(Flattening &context, const Ranges &ranges, const Tape &t
         sample(beside_middle(cell));
         int ways_at = top.ways_at;
         if (asks_ways && top.bound != infinity && top.depth >= ways_at) {
-            const double less = machine.norm_by_ways(cell, top.bound * ways_gain);
+            const double less =
+                machine.norm_by_ways(cell, top.bound * ways_gain) * ranges.rules[Rule::Ways];
             ways_at = top.depth + more_ways;
             if (less < top.bound * ways_gain) {
                 queue.push({less, top.depth, std::int16_t(ways_at), top.at});
@@ -435,10 +436,11 @@ FieldBound bound_field(Flattening &context, const Ranges &ranges, NodeId field,
             out.lipschitz > budget.enough && holds_origin(domain.box))
             if (const auto less =
                     bound_along_rays(own, all, copy, budget, out.lipschitz, out.sampled))
-                out.lipschitz = *less;
+                out.lipschitz = *less * all.rules[Rule::Rays];
         if (out.lipschitz <= budget.enough || is_near(own.graph, copy, out)) return out;
         const bool refused = !std::isfinite(out.lipschitz);
-        const auto parts = bound_by_parts(own, all, copy, domain, budget, refused);
+        auto parts = bound_by_parts(own, all, copy, domain, budget, refused);
+        if (parts) parts->lipschitz *= all.rules[Rule::Composed];
         if (!parts || !(parts->lipschitz < out.lipschitz)) return out;
         // What is rounding beside so steep a part may be all of a field that is flat.
         if (refused && parts->lipschitz > beyond_flat * seen_once(own, all, copy, domain))

@@ -354,21 +354,24 @@ void Machine::finish(const Instruction &instruction, double rule, bool odd_used)
         for (std::size_t i = 1; i < instruction.turned.size(); ++i)
             still = still && norm_[instruction.turned[i]] == 0;
         if (still)
-            rule = std::min(rule, up(times(instruction.norm, norm_[instruction.turned[0]]), 4));
+            rule = std::min(rule, up(times(instruction.norm, norm_[instruction.turned[0]]), 4) *
+                                      ranges_.rules[Rule::Linear]);
     }
     const bool is_log = instruction.op == Op::Log || instruction.op == Op::Log2;
     if (is_log && n == 1 && instruction.form == Form::Plain &&
         (rule < infinity || value(instruction.args[0], 0).lo >= min_single))
         rule = std::min(rule, up(times(instruction.op == Op::Log ? 1 : std::numbers::log2e,
                                        relative_[instruction.args[0]]),
-                                 4));
+                                 4) *
+                                  ranges_.rules[Rule::Relative]);
     if (std::isnan(rule)) rule = infinity;
     double box = 0;
     if (rule > 0) box = spectral_norm(&grad_[at], n);
     norm_[s] = std::min(rule, box);
     relative_[s] = relative_norm(instruction);
-    if (n == 1 && relative_[s] < infinity) hold_norm(s, up(times(relative_[s], value_[at].hi), 4));
-    hold_norm(s, norm_by_raised(instruction));
+    if (n == 1 && relative_[s] < infinity)
+        hold_norm(s, up(times(relative_[s], value_[at].hi), 4) * ranges_.rules[Rule::Relative]);
+    hold_norm(s, norm_by_raised(instruction) * ranges_.rules[Rule::Raised]);
     trouble_[s] = Trouble::None;
     cause_[s] = NodeId();
     pole_[s] = 0;

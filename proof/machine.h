@@ -41,7 +41,7 @@ struct Ranges {
     };
     std::vector<Cached> caches;
     Work *work = nullptr; // of all machines together
-    Rules rules;          // of endless cells; tests weaken one (rules.h)
+    Rules rules;          // tests weaken one (rules.h)
 };
 // Of params and time all that the scene allows, or the present values at these times (prove.h).
 // Reads the images and grids, which takes steps off `work`.
@@ -171,6 +171,9 @@ class Machine {
     void decide(const Instruction &instruction);
     void read_step(const Instruction &instruction);
     void finish(const Instruction &instruction, double norm, bool odd_used);
+    void weaken(Slot s, double factor);
+    void hold(const Instruction &instruction, Rule rule,
+              void (Machine::*apply)(const Instruction &));
     void hold_mean(const Instruction &instruction);
     void hold_norm(Slot s, double most);
     void hold_turning(const Instruction &instruction);

@@ -33,32 +33,50 @@ Step::Step(Machine &of, const Instruction &instruction)
             for (int c = 0; c < size(a); ++c) any_odd = any_odd || odd(a, c);
 }
 
-void Machine::step(const Instruction &instruction) {
-    Step step(*this, instruction);
+// A test's: all that is known of the slope, times `factor`.
+void Machine::weaken(Slot s, double factor) {
+    if (factor == 1 || norm_[s] == ir::rounding::infinity) return;
+    norm_[s] *= factor;
+    for (std::uint32_t i = tape_.first[s]; i < tape_.first[s] + tape_.size[s]; ++i)
+        for (Interval &own : grad_[i]) own = own * Interval(factor);
+}
+
+// A rule that may say less than the op's own does.
+void Machine::hold(const Instruction &instruction, Rule rule,
+                   void (Machine::*apply)(const Instruction &)) {
+    const double before = norm_[instruction.out];
+    (this->*apply)(instruction);
+    if (norm_[instruction.out] < before) weaken(instruction.out, ranges_.rules[rule]);
+}
+
+void Machine::step(const Instruction &in) {
+    Step step(*this, in);
     step.run();
-    if (far_out_.holds()) hold_far(instruction);
-    hold_raised(instruction);
-    if (instruction.turning) hold_turning(instruction);
-    if (instruction.mean) hold_mean(instruction);
-    if (instruction.around) hold_around(instruction);
-    if (instruction.beside_turn) hold_beside_turn(instruction);
-    if (instruction.between) hold_between(instruction);
-    if (instruction.along) hold_along(instruction);
-    if (instruction.ellipsoid) hold_ellipsoid(instruction);
-    if (instruction.univariate) hold_univariate(instruction);
-    if (instruction.from_axis) hold_angle(instruction);
-    if (instruction.op == Op::Asin || instruction.op == Op::Acos) hold_triangle(instruction);
-    if (instruction.has_majorant) hold_majorant(instruction);
-    if (instruction.stands_at) {
-        value_[tape_.first[instruction.out]] = *instruction.stands_at;
-        relative_[instruction.out] = ir::rounding::infinity; // it was that of another value
-        raised_[instruction.out] = {};
+    if (const auto &weak = ranges_.rules.of_op; weak.factor != 1)
+        if (weak.op == int(in.op) || weak.form == int(in.form)) weaken(in.out, weak.factor);
+    if (far_out_.holds()) hold_far(in);
+    hold(in, Rule::Raised, &Machine::hold_raised);
+    if (in.turning) hold(in, Rule::Turning, &Machine::hold_turning);
+    if (in.mean) hold(in, Rule::Mean, &Machine::hold_mean);
+    if (in.around) hold(in, Rule::AroundAxis, &Machine::hold_around);
+    if (in.beside_turn) hold(in, Rule::BesideTurn, &Machine::hold_beside_turn);
+    if (in.between) hold(in, Rule::Between, &Machine::hold_between);
+    if (in.along) hold(in, Rule::Along, &Machine::hold_along);
+    if (in.ellipsoid) hold(in, Rule::Ellipsoid, &Machine::hold_ellipsoid);
+    if (in.univariate) hold(in, Rule::Univariate, &Machine::hold_univariate);
+    if (in.from_axis) hold(in, Rule::AxisAngle, &Machine::hold_angle);
+    if (in.op == Op::Asin || in.op == Op::Acos) hold(in, Rule::Triangle, &Machine::hold_triangle);
+    if (in.has_majorant) hold(in, Rule::Majorant, &Machine::hold_majorant);
+    if (in.stands_at) {
+        value_[tape_.first[in.out]] = *in.stands_at;
+        relative_[in.out] = ir::rounding::infinity; // it was that of another value
+        raised_[in.out] = {};
     }
     if (reads_values_) {
         step.read();
-        decide(instruction);
+        decide(in);
     }
-    if (!bend_.empty()) bend_[instruction.out] = step.bend();
+    if (!bend_.empty()) bend_[in.out] = step.bend();
 }
 
 // An argument that single precision may not hold, or of a length whose square it may not, is infinity

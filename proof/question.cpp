@@ -63,6 +63,11 @@ void Question::add_inputs(const ir::Content &content, const Ranges &ranges, Node
             add(static_cast<std::uint32_t>(rule));
             add(ranges.rules.factor[rule]);
         }
+    if (is_weakened(ranges.rules.of_op.factor)) {
+        add(static_cast<std::uint32_t>(ranges.rules.of_op.op));
+        add(static_cast<std::uint32_t>(ranges.rules.of_op.form));
+        add(ranges.rules.of_op.factor);
+    }
     if (context_.graph.reads(field).time) add(own_.time = ranges.time);
     for (std::uint32_t param : content.params)
         add_all(own_.params.emplace_back(ranges.params[param]));

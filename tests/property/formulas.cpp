@@ -3,6 +3,7 @@
 // checker accepts is measured (judge.h). FATHOM_EFFORT=80 is the long form.
 // Long: one grammar, whose rules call each other.
 #include "judge.h"
+#include "judge_shader.h"
 #include "tests/support/effort.h"
 
 #include <catch2/catch.hpp>
@@ -314,7 +315,28 @@ class Formula : public Chance {
 } // namespace
 
 TEST_CASE("a formula is refused, or is as flat as proved") {
-    const Judged judged = judge_scenes<Formula>(effort(85), 3000);
+    const Judged judged = judge_scenes<Formula>(effort(85), 3000, some_in_shader());
+    CHECK(judged.again > 0);
     CHECK(judged.wrong == 0);
     CHECK(judged.accepted > judged.scenes / 6);
+}
+
+TEST_CASE("a shader that is steeper than proved is found") {
+    const std::string text =
+        "param k = 0.5 in 0..1\nimplicit(p => 0.8 * length(p - k * X) - 0.5)\n";
+    for (const float times : {1.0f, 1.3f}) {
+        const Evaluator other = [&](const ir::Scene &scene) -> Values {
+            const Values field = in_shader(scene);
+            return [=](const ir::Scene &now, double time, const std::vector<Point3> &points) {
+                std::vector<float> out = field(now, time, points);
+                for (float &x : out) x *= times;
+                return out;
+            };
+        };
+        Chance random(1);
+        const Verdict verdict = judge(text, random, 400, other);
+        INFO(verdict.wrong);
+        CHECK(verdict.accepted);
+        CHECK(verdict.wrong.empty() == (times == 1.0f));
+    }
 }

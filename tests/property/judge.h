@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fmt/format.h>
+#include <functional>
 #include <initializer_list>
 #include <string>
 
@@ -50,6 +51,7 @@ struct Verdict {
     bool accepted = false;
     std::string code, wrong; // the first error; what was measured against the proof
     long pairs = 0;          // of points that were compared
+    long again = 0;          // … by another evaluator, too
 };
 
 // What may be said of a scene that is well formed.
@@ -128,8 +130,28 @@ inline void halve(std::vector<Pair> &pairs, Sampler &sampler, bool to_surface) {
     }
 }
 
+// The values of a scene's marched field at these points and this moment, by another evaluator than
+// the processor; and what makes one of a scene.
+using Values =
+    std::function<std::vector<float>(const ir::Scene &, double, const std::vector<Point3> &)>;
+using Evaluator = std::function<Values(const ir::Scene &)>;
+
+// The same pairs by the other evaluator.
+inline std::string measured_again(const Values &again, const ir::Scene &scene, double time,
+                                  const std::vector<Pair> &pairs, Verdict &counted) {
+    counted.again += long(pairs.size());
+    std::vector<Point3> points;
+    for (const Pair &pair : pairs) points.push_back(pair.p), points.push_back(pair.q);
+    const std::vector<float> at = again(scene, time, points);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const Pair pair{pairs[i].p, pairs[i].q, at[2 * i], at[2 * i + 1]};
+        if (pair.is_wrong(scene.rounding.subtracted)) return "not by the processor: " + pair.text();
+    }
+    return "";
+}
+
 inline std::string measured(const ir::Scene &scene, double time, Chance &random, int count,
-                            long &compared) {
+                            Verdict &counted, const Values &again = {}) {
     Sampler sampler(scene, time);
     const auto beside = [&](const Point3 &p) {
         Point3 to = p;
@@ -148,8 +170,10 @@ inline std::string measured(const ir::Scene &scene, double time, Chance &random,
         return pairs;
     };
     std::string wrong;
+    std::vector<Pair> all;
     const auto compare = [&](const std::vector<Pair> &pairs) {
-        compared += long(pairs.size());
+        counted.pairs += long(pairs.size());
+        if (again) all.insert(all.end(), pairs.begin(), pairs.end());
         for (const Pair &pair : pairs)
             if (wrong.empty() && pair.is_wrong(scene.rounding.subtracted)) wrong = pair.text();
         return wrong.empty();
@@ -182,11 +206,12 @@ inline std::string measured(const ir::Scene &scene, double time, Chance &random,
     for (const auto *from : {&steep, &surface})
         for (const Pair &pair : *from)
             for (int i = 0; i < 2; ++i) around.push_back({pair.p, beside(pair.p)});
-    compare(valued(std::move(around)));
-    return wrong;
+    if (!compare(valued(std::move(around))) || !again) return wrong;
+    return measured_again(again, scene, time, all, counted);
 }
 
-inline Verdict judge(const std::string &text, Chance &random, int pairs) {
+inline Verdict judge(const std::string &text, Chance &random, int pairs,
+                     const Evaluator &other = {}) {
     Verdict out;
     driver::Compilation c = driver::compile_text("adversary.sdf", text, "", {});
     if (!c.good()) {
@@ -201,11 +226,12 @@ inline Verdict judge(const std::string &text, Chance &random, int pairs) {
     // Steps by cells are as long as is safe, and no slope of anything.
     c.scene.cells.clear();
     ir::lower(c.scene);
+    const Values again = other ? other(c.scene) : Values{};
     for (const double part : {0.0, 1.0, 0.5, 0.37, 1.0 / 3}) {
         for (ir::Param &k : c.scene.params) // those that decide what there is are compiled in
             if (!k.structural) k.value[0] = k.lo[0] + (k.hi[0] - k.lo[0]) * part;
         const double time = std::min(c.scene.render.time_end, 10.0) * part;
-        out.wrong = measured(c.scene, time, random, pairs, out.pairs);
+        out.wrong = measured(c.scene, time, random, pairs, out, again);
         if (!out.wrong.empty()) {
             if (!c.scene.params.empty())
                 out.wrong += fmt::format(", k = {}", c.scene.params[0].value[0]);
@@ -218,27 +244,29 @@ inline Verdict judge(const std::string &text, Chance &random, int pairs) {
 
 struct Judged {
     int scenes = 0, accepted = 0, wrong = 0;
+    long pairs = 0, again = 0; // as a verdict counts them
 };
 // So many scenes that a `Random`, a Chance with a `scene()`, writes.
-template <class Random> Judged judge_scenes(int scenes, int pairs) {
+template <class Random> Judged judge_scenes(int scenes, int pairs, const Evaluator &other = {}) {
     Judged out{.scenes = scenes};
     const bool show = std::getenv("FATHOM_SHOW") != nullptr;
-    long compared = 0;
     for (int i = 0; i < scenes; ++i) {
         Random random(std::uint64_t(seed()) * 1'000'003u + std::uint64_t(i));
         const std::string text = random.scene();
         if (show) std::printf("%d:\n%s", i, text.c_str());
         std::fflush(stdout);
-        const Verdict verdict = judge(text, random, pairs);
+        const Verdict verdict = judge(text, random, pairs, other);
         out.accepted += verdict.accepted;
-        compared += verdict.pairs;
+        out.pairs += verdict.pairs;
+        out.again += verdict.again;
         out.wrong += !verdict.wrong.empty();
         if (show) std::printf("%s\n", verdict.accepted ? "taken" : verdict.code.c_str());
         if (!verdict.wrong.empty())
             std::printf("WRONG %d: %s\n%s", i, verdict.wrong.c_str(), text.c_str());
         std::fflush(stdout);
     }
-    std::printf("%d of %d accepted, %ld pairs\n", out.accepted, scenes, compared);
+    const std::string more = out.again > 0 ? fmt::format(", {} in the shader, too", out.again) : "";
+    std::printf("%d of %d accepted, %ld pairs%s\n", out.accepted, scenes, out.pairs, more.c_str());
     return out;
 }
 

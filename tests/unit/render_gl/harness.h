@@ -26,13 +26,8 @@ struct Harness {
     }
 };
 
-// `sdf(vec3(row, component, 0))` of an emitted field for rows 0 … count-1 and `components`
-// components. Where the field reads images or grids, they are those of `scene`.
-inline std::vector<float> run_shader(const glsl::Output &output, int count, int components,
-                                     const ir::Scene *scene = nullptr) {
-    Harness h;
-    const std::string main = "\nout vec4 value;\nvoid main() {\n    value = "
-                             "vec4(sdf(vec3(gl_FragCoord.xy - 0.5, 0.0)));\n}\n";
+// Compiles and links the field's text with this `main` behind it.
+inline void link_field(Harness &h, const glsl::Output &output, const std::string &main) {
     const std::string fragment = output.text + main;
     const char *vertex = "#version 330 core\nvoid main() { gl_Position = vec4(gl_VertexID == 1 ? "
                          "3.0 : -1.0, gl_VertexID == "
@@ -54,15 +49,27 @@ inline std::vector<float> run_shader(const glsl::Output &output, int count, int 
         glGetProgramInfoLog(h.program, sizeof log, nullptr, log);
         FAIL(log << "\n" << fragment);
     }
+}
+
+// What is drawn goes to `width` times `height` values. The program is in use from here on.
+inline void aim(Harness &h, int width, int height) {
+    glDeleteFramebuffers(1, &h.framebuffer); // of an earlier drawing
+    glDeleteTextures(1, &h.texture);
+    glDeleteVertexArrays(1, &h.vertex_array);
+    glActiveTexture(GL_TEXTURE0);
     glGenTextures(1, &h.texture);
     glBindTexture(GL_TEXTURE_2D, h.texture);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, count, components, 0, GL_RGBA, GL_FLOAT, nullptr);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, nullptr);
     glGenFramebuffers(1, &h.framebuffer);
     glBindFramebuffer(GL_FRAMEBUFFER, h.framebuffer);
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, h.texture, 0);
     glGenVertexArrays(1, &h.vertex_array);
     glBindVertexArray(h.vertex_array);
     glUseProgram(h.program);
+}
+
+// The tables, images and grids that the field reads, the latter of `scene`.
+inline void bind_data(Harness &h, const glsl::Output &output, const ir::Scene *scene) {
     if (!output.tables.empty()) {
         glGenBuffers(1, &h.buffer);
         glBindBuffer(GL_TEXTURE_BUFFER, h.buffer);
@@ -97,12 +104,28 @@ inline std::vector<float> run_shader(const glsl::Output &output, int count, int 
         glTexImage3D(GL_TEXTURE_3D, 0, GL_R32F, grid.size[0], grid.size[1], grid.size[2], 0, GL_RED,
                      GL_FLOAT, grid.values.data());
     }
-    glViewport(0, 0, count, components);
+}
+
+inline std::vector<float> drawn(int width, int height) {
+    glViewport(0, 0, width, height);
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    std::vector<float> rgba(static_cast<std::size_t>(count * components * 4)), result;
-    glReadPixels(0, 0, count, components, GL_RGBA, GL_FLOAT, rgba.data());
+    std::vector<float> rgba(static_cast<std::size_t>(width * height * 4)), result;
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, rgba.data());
     for (std::size_t i = 0; i < rgba.size(); i += 4) result.push_back(rgba[i]);
     return result;
+}
+
+// `sdf(vec3(row, component, 0))` of an emitted field for rows 0 … count-1 and `components`
+// components. Where the field reads images or grids, they are those of `scene`.
+inline std::vector<float> run_shader(const glsl::Output &output, int count, int components,
+                                     const ir::Scene *scene = nullptr) {
+    Harness h;
+    link_field(h, output,
+               "\nout vec4 value;\nvoid main() {\n    value = "
+               "vec4(sdf(vec3(gl_FragCoord.xy - 0.5, 0.0)));\n}\n");
+    aim(h, count, components);
+    bind_data(h, output, scene);
+    return drawn(count, components);
 }
 
 } // namespace fathom
