@@ -110,10 +110,18 @@ class Units {
                 failed_ = true; // few of its digits are right
             else if (out.by == 0 || factors.size() >= out.lead.size())
                 out.lead = factors, out.by = c.sum;
-        failed_ = failed_ || out.by == 0 || inverses_.size() > 8;
+        failed_ = failed_ || out.by == 0 || inverses_.size() > 8 || is_nothing(out.rest);
         out.rest.erase(out.lead);
         inverses_.push_back(out);
         return out.var;
+    }
+
+    // Is it 0, or nearly, by what is known of the inner vectors? Its direction is rounding then.
+    bool is_nothing(Sum square) {
+        for (std::size_t i = inverses_.size(); i-- > 0;) reduce(square, inverses_[i]);
+        return std::ranges::all_of(square, [](const auto &term) {
+            return std::fabs(term.second.sum) < 1e-6 * term.second.sizes;
+        });
     }
 
     // A scalar as a sum of products.

@@ -97,6 +97,26 @@ TEST_CASE("what is next to a unit vector is no number") {
     CHECK(proof::number_of_units(s.g, s.g.make(Op::Dot, {u, u})) == 1.0);
 }
 
+// Single precision makes a direction of its own rounding, at right angles to nothing.
+TEST_CASE("what is 0 by its making is over its length at right angles to nothing") {
+    Scenery s;
+    const NodeId k = s.parameter(-0.2, 0.6), t = s.parameter(0, 7);
+    const NodeId up = s.vec(s.sin(t), s.n(1), k), w = s.call(Op::Normalize, up);
+    const auto beside = [&](NodeId d) {
+        const NodeId along = s.g.make(Op::Dot, {w, d});
+        return s.call(Op::Normalize, s.g.sub(d, s.g.mul(w, s.g.splat(along, Type::Vec3))));
+    };
+    for (const NodeId d : {up, w, s.g.mul(up, s.g.splat(s.n(2.5), Type::Vec3))}) {
+        const NodeId u = beside(d), v = s.g.make(Op::Cross, {w, u});
+        for (const NodeId other : {w, u, v})
+            CHECK(!proof::number_of_units(s.g, s.g.make(Op::Dot, {u, other})));
+        const NodeId q = s.g.make(Op::MatMul, {s.g.make(Op::Make, Type::Mat3, {u, v, w}), s.p});
+        CHECK(s.bound(s.length(q), cube(2)).lipschitz > 1.3);
+    }
+    const NodeId u = beside(s.g.vec3(0, 0, 1));
+    CHECK(proof::number_of_units(s.g, s.g.make(Op::Dot, {u, w})) == 0.0);
+}
+
 TEST_CASE("a field in a frame of unit vectors is as steep as it is") {
     Scenery s;
     const NodeId time = s.parameter(0, 7), h = s.parameter(0.2, 1);
