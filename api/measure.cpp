@@ -61,7 +61,7 @@ Measures measured(const Scene &scene, const MeshOptions &options) {
     result.components = form.components;
     result.genus = form.genus;
     result.rests_on = rests_on(found.used_bound);
-    result.message = advice_on_drawn(ir_of(scene), settings, made);
+    result.message = advice_on_drawn(ir_of(scene), settings, made, std::nullopt);
     return result;
 }
 

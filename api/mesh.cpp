@@ -64,7 +64,8 @@ void list_undecided(const fathom::mesh::Octree &octree,
     }
 }
 
-MeshCertificate certificate_of(const fathom::mesh::Certificate &found) {
+MeshCertificate certificate_of(const fathom::mesh::Made &mesh,
+                               const fathom::mesh::Certificate &found) {
     MeshCertificate made;
     made.certified = found.certified();
     made.mesh_to_surface = found.mesh_to_surface;
@@ -75,6 +76,7 @@ MeshCertificate certificate_of(const fathom::mesh::Certificate &found) {
     made.components = found.components;
     made.genus = found.genus;
     made.shape_proved = found.shape.proved;
+    made.shape_why = why_shape_is_open(mesh, found);
     made.shape_open = found.shape.open;
     made.shape_place = found.shape.place;
     made.shape_doubted = found.shape.doubted;
@@ -84,6 +86,7 @@ MeshCertificate certificate_of(const fathom::mesh::Certificate &found) {
     made.largest_area = found.area.hi;
     made.open_places = found.open_places;
     made.open_place = found.open_place;
+    made.area_why = why_area_is_open(found);
     made.looked_for_area = found.looked_for_area;
     made.mesh_volume = found.mesh_volume;
     made.mesh_area = found.mesh_area;
@@ -318,9 +321,7 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
                 if (made.failure != fathom::mesh::Failure::None)
                     return refused(made, ir_of(scene), settings);
                 if (options.certify && made.simplified > 0) {
-                    fathom::mesh::Progress progress;
-                    if (options.progress) progress.report = options.progress;
-                    progress.from = 0.9;
+                    fathom::mesh::Progress progress(options.progress, 0.9);
                     const fathom::mesh::Certificate before = std::move(certificate);
                     certificate = certify(ir_of(scene), settings, made, progress);
                     // It has the pieces and handles that it had.
@@ -335,13 +336,11 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
                                 mesh);
             }
             if (options.certify) {
-                fathom::mesh::Progress progress;
-                if (options.progress) progress.report = options.progress;
-                progress.from = progress.to; // it was at its end
+                fathom::mesh::Progress progress(options.progress, 1); // it was at its end
                 enclose_measures(ir_of(scene), settings, made, progress, certificate);
                 if (progress.cancelled) made.failure = fathom::mesh::Failure::Cancelled;
                 if (progress.cancelled) return refused(made, ir_of(scene), settings);
-                mesh.certificate = certificate_of(certificate);
+                mesh.certificate = certificate_of(made, certificate);
             }
             const std::vector<fathom::mesh::Cell> &undecided =
                 options.certify ? certificate.undecided : made.octree.undecided;
@@ -351,7 +350,8 @@ Mesh make_mesh(const Scene &scene, const MeshOptions &options) noexcept {
             else if (certificate.shape.finer)
                 mesh.message = advice_on_shape(made, *certificate.shape.finer);
             else if (!options.certify || !certificate.shape.proved)
-                mesh.message = advice_on_drawn(ir_of(scene), settings, made);
+                mesh.message =
+                    advice_on_drawn(ir_of(scene), settings, made, certificate.shape.thin);
             mesh.vertices = std::move(made.mesh.vertices);
             mesh.normals = std::move(made.mesh.normals);
             mesh.triangles = std::move(made.mesh.triangles);

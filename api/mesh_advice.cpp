@@ -44,6 +44,53 @@ std::string advice_on_loose(const fathom::mesh::Field &field, const fathom::mesh
            "its true slope does, as of shapes in place of a formula, or a part of it by itself";
 }
 
+// What of a kernel or another step has no slopes.
+std::string what_has_no_slopes(const fathom::mesh::Unknown &unknown) {
+    using Why = fathom::mesh::Unknown::Why;
+    using cpu::Kernel;
+    using cpu::StepKind;
+    switch (unknown.why) {
+    case Why::Step: break;
+    case Why::TooLong: return "too many operations in one place";
+    case Why::Jump: return "a field that may jump there, since its bound is not proved";
+    case Why::NoNumber: return "numbers that are not finite there";
+    }
+    switch (unknown.missing.kind) {
+    case StepKind::Run: break;
+    case StepKind::TableRead: return "a list that is read by the place";
+    case StepKind::Image: return "an image";
+    case StepKind::Grid: return "a grid of distances";
+    case StepKind::Call: return "a function";
+    case StepKind::Loop:
+    case StepKind::BreakUnless: return "a loop that is long, or ends early at some places";
+    }
+    struct Row {
+        Kernel kernel;
+        const char *words;
+    };
+    constexpr Row rows[] = {
+        {Kernel::SqrtF, "a root of what may be 0 (`sqrt`; cones, frames and polygons take one)"},
+        {Kernel::DivF, "a quotient by what may be 0"},
+        {Kernel::ModF, "a remainder (`%`) by what may be 0"},
+        {Kernel::Atan2F, "an angle about its axis (`atan`)"},
+        {Kernel::PowF, "a power that is no whole number (`pow`)"},
+        {Kernel::Perlin, "`noise`"},
+        {Kernel::Simplex, "`simplex`"},
+        {Kernel::ValueNoise, "`value_noise`"},
+        {Kernel::Worley, "`worley`"},
+        {Kernel::SpotNoise, "`spot_noise`"},
+        {Kernel::BlendStairs, "a blend in stairs"},
+        {Kernel::BlendColumns, "a blend in columns"},
+    };
+    for (const Row &row : rows)
+        if (row.kernel == unknown.missing.kernel) return row.words;
+    std::string name = cpu::kernel_name(unknown.missing.kernel);
+    if (name.ends_with('F')) name.pop_back();
+    for (char &c : name)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return fmt::format("`{}`", name);
+}
+
 } // namespace
 
 std::string advice_of(const ir::Scene &scene, const fathom::mesh::Settings &settings,
@@ -69,7 +116,8 @@ std::string advice_of(const ir::Scene &scene, const fathom::mesh::Settings &sett
 }
 
 std::string advice_on_drawn(const ir::Scene &scene, const fathom::mesh::Settings &settings,
-                            const fathom::mesh::Made &made) {
+                            const fathom::mesh::Made &made,
+                            const std::optional<fathom::mesh::TooThin> &seen) {
     const double side = made.octree.lattice.side(made.octree.lattice.level);
     if (made.widened > 0)
         return fmt::format(
@@ -82,8 +130,10 @@ std::string advice_on_drawn(const ir::Scene &scene, const fathom::mesh::Settings
                            "its vertices moved to the surface: walls thinner than {1:.2g} may have "
                            "holes, which a tolerance of {2:.2g} shows",
                            -made.widened, -2 * made.widened, 0.5 * side);
-    const fathom::mesh::Field field(scene, settings.time, settings.bounds);
-    const fathom::mesh::TooThin thin = too_thin_in(field, settings, made);
+    const fathom::mesh::TooThin thin =
+        seen ? *seen
+             : too_thin_in(fathom::mesh::Field(scene, settings.time, settings.bounds), settings,
+                           made);
     const std::string shown = shown_by(thin.thickness, made.octree.lattice, made.box);
     switch (thin.sort) {
     case fathom::mesh::TooThin::Sort::None: break;
@@ -100,6 +150,46 @@ std::string advice_on_drawn(const ir::Scene &scene, const fathom::mesh::Settings
                            thin.thickness, shown);
     }
     return "";
+}
+
+std::string why_shape_is_open(const fathom::mesh::Made &made,
+                              const fathom::mesh::Certificate &certificate) {
+    const fathom::mesh::ShapeAnswer &shape = certificate.shape;
+    if (shape.proved) return "";
+    if (!certificate.near())
+        return "it is looked for where nothing is undecided and both distances hold";
+    if (made.widened != 0)
+        return "it is not looked for where walls or gaps thinner than cells are drawn wider: "
+               "smaller cells draw them as they are";
+    const std::string place = fmt::format("near [{:.4g}, {:.4g}, {:.4g}]", shape.place[0],
+                                          shape.place[1], shape.place[2]);
+    if (shape.why)
+        return fmt::format(
+            "how fast the field changes {} is not known, by {}: what is made without "
+            "that is proved alone, as by `--part` or `--bounds`",
+            place, what_has_no_slopes(*shape.why));
+    if (shape.dear)
+        return "it would take more than the work that is spent: larger cells take less, or a part "
+               "of it, by `--part` or `--bounds`";
+    const fathom::mesh::Lattice &lattice = made.octree.lattice;
+    return fmt::format(
+        "in {} cells, as {}, the field is not seen to rise one way: smaller ones may "
+        "show it, as with a tolerance of {:.2g}",
+        shape.unseen > 0 ? fmt::format("more than {}", shape.open - shape.unseen)
+                         : fmt::format("{}", shape.open),
+        place, 0.5 * lattice.side(lattice.level));
+}
+
+std::string why_area_is_open(const fathom::mesh::Certificate &certificate) {
+    if (std::isfinite(certificate.area.hi)) return "";
+    if (!certificate.looked_for_area)
+        return "an upper end was not looked for, which would take too much: `fathom measure` looks "
+               "for it";
+    const fathom::mesh::Real3 &at = certificate.open_place;
+    return fmt::format(
+        "how the surface runs near [{:.4g}, {:.4g}, {:.4g}] is not known in boxes as "
+        "small as were looked at: `fathom measure` looks closer",
+        at[0], at[1], at[2]);
 }
 
 std::string advice_on_shape(const fathom::mesh::Made &made, const fathom::mesh::Form &finer) {

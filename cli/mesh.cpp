@@ -48,12 +48,17 @@ Json json_of(const v1::Mesh &mesh) {
     if (c) {
         const bool near = mesh.undecided_cells == 0 && c->unproved_places == 0;
         const auto everywhere = [&](double d) { return near ? Json(d) : Json(); };
+        json["proved"] = Json::array();
+        if (near) json["proved"].push_back("distances");
+        if (c->shape_proved) json["proved"].push_back("shape");
+        if (std::isfinite(c->largest_area)) json["proved"].push_back("area");
         json["components"] = c->shape_proved ? Json(of.components) : Json();
         json["genus"] = c->shape_proved ? Json(of.genus) : Json();
         if (!c->shape_proved)
             json["shape_open"] = {{"cells", c->shape_open},
                                   {"near", c->shape_open > 0 ? Json(c->shape_place) : Json()},
-                                  {"doubted", c->shape_doubted}};
+                                  {"doubted", c->shape_doubted},
+                                  {"why", c->shape_why}};
         json["mesh_to_surface"] = everywhere(c->mesh_to_surface);
         json["surface_to_mesh"] = everywhere(c->surface_to_mesh);
         json["volume"] = {c->least_volume, c->largest_volume};
@@ -62,7 +67,8 @@ Json json_of(const v1::Mesh &mesh) {
         if (c->open_places > 0)
             json["area_open"] = {{"boxes", c->open_places},
                                  {"near", c->open_place},
-                                 {"looked_for", c->looked_for_area}};
+                                 {"looked_for", c->looked_for_area},
+                                 {"why", c->area_why}};
     }
     json["mesh_volume"] = of.volume;
     json["mesh_area"] = of.area;
@@ -90,11 +96,7 @@ void say_certificate(const v1::Mesh &mesh, const std::string &what, Terminal &te
     const std::string area =
         std::isfinite(c.largest_area)
             ? fmt::format("between {:.6g} and {:.6g}", c.least_area, c.largest_area)
-            : fmt::format("above {:.6g} ({})", c.least_area,
-                          c.looked_for_area
-                              ? "`fathom measure` looks closer"
-                              : "an upper end was not looked for, which would take too much: "
-                                "`fathom measure` looks for it");
+            : fmt::format("above {:.6g} ({})", c.least_area, c.area_why);
     const std::string volume =
         fmt::format("the solid's volume lies between {:.6g} and {:.6g}, its area {}",
                     c.least_volume, c.largest_volume, area);
@@ -105,14 +107,19 @@ void say_certificate(const v1::Mesh &mesh, const std::string &what, Terminal &te
                                          c.mesh_to_surface, c.surface_to_mesh);
     const std::string handles =
         fmt::format("{} and {} handle{}", pieces, c.genus, c.genus == 1 ? "" : "s");
+    // Distances say nothing of what lies nearer than they are.
+    const std::string open =
+        fmt::format("whether pieces nearer than that are apart, and narrower holes open, is not "
+                    "proved: {}; the mesh is in {}",
+                    c.shape_why, handles);
     if (c.certified)
-        terminal.say(fmt::format("{}: certified: {}; {} {}; {}", what, near,
-                                 c.shape_proved ? "the solid's surface is in" : "the mesh is in",
-                                 handles, volume));
+        terminal.say(fmt::format("{}: certified: {}; {}; {}", what, near,
+                                 c.shape_proved ? "the solid's surface is in " + handles : open,
+                                 volume));
     else if (c.shape_doubted)
-        terminal.say(fmt::format("{}: partial: {}; but the mesh is in {}, and that the solid is so "
-                                 "is not proved; {}",
-                                 what, near, handles, volume));
+        terminal.say(fmt::format("{}: partial: {}; but that the solid has the mesh's pieces and "
+                                 "handles is in doubt; {}; {}",
+                                 what, near, open, volume));
     else
         terminal.say(fmt::format("{}: partial: of {} cells and of {} places of the mesh nothing is "
                                  "proved; {}",

@@ -2,8 +2,10 @@
 // how many pieces it is, and what volume the solid has (docs/meshes.md, 6).
 #pragma once
 
+#include "mesh/drawn.h"
 #include "mesh/grid.h"
 #include "mesh/measure.h"
+#include "mesh/slopes.h"
 
 #include <limits>
 #include <optional>
@@ -25,12 +27,18 @@ struct Form {
 // Whether a mesh has the pieces and handles of the solid.
 struct ShapeAnswer {
     bool proved = false;
-    std::size_t open = 0;    // leaves; 0 where it was not looked for
-    Real3 place{};           // one of them
+    std::size_t open = 0; // leaves; 0 where it was not looked for
+    Real3 place{};        // one of them
+    // Of these, those of which no slopes are known, and why that is about the place; …
+    std::size_t unknown = 0;
+    std::optional<Unknown> why{};
+    std::size_t unseen = 0;  // … and those that were not looked at,
+    bool dear = false;       // … as too much work
     std::vector<Cell> cells; // of these leaves those that smaller ones may tell of
     // Samples see walls, gaps or edges that cells are too large for: it may have others.
     bool doubted = false;
-    std::optional<Form> finer; // … or cells of half the side show others
+    std::optional<Form> finer;   // … or cells of half the side show others
+    std::optional<TooThin> thin; // what they see, where they were asked
     // Where it is proved, what the surface and the solid measure by the same directions.
     Enclosure area, volume;
 };

@@ -352,6 +352,7 @@ void settle_shape(const ir::Scene &scene, const Field &field, const Settings &se
     divide_for_shape(field, settings, most, mended, progress);
     if (certificate.shape.proved || progress.cancelled) return;
     const TooThin thin = too_thin_in(field, settings, mended.made);
+    certificate.shape.thin = thin;
     if (thin.sort == TooThin::Sort::None) {
         bool same = true;
         const Form form{certificate.components, certificate.genus};

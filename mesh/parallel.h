@@ -16,6 +16,9 @@ namespace fathom::mesh {
 // How far a long piece of work is, and whether it is to go on. `report` is called by one thread at
 // a time with the share that is done, 0 to 1; false cancels, for good.
 struct Progress {
+    Progress() = default;
+    explicit Progress(std::function<bool(double)> reports, double begin = 0)
+        : report(std::move(reports)), from(begin) {}
     std::function<bool(double done)> report;
     double from = 0, to = 1; // the part of the whole that the work at hand is
     double told = 0;         // never less than before

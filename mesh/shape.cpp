@@ -1,5 +1,6 @@
 #include "mesh/shape.h"
 
+#include "mesh/facets.h"
 #include "mesh/shape_area.h"
 
 #include <algorithm>
@@ -14,92 +15,11 @@ constexpr std::size_t tasks_at_once = 8;
 constexpr int most_failed = 8;         // boxes above leaves; more of that size are not looked at
 constexpr std::size_t hopeless = 16;   // leaves of a task of which no slopes are known, or
 constexpr std::size_t too_many = 64;   // … in which it is open: no more looks
+constexpr double work_a_leaf = 60;     // kernels, that may be taken in any case
 constexpr double least_of_task = 5000; // kernels
 constexpr double most_shares = 8;      // of the work by leaves, that a task may take
 constexpr double least_at_edges = 1000;
 constexpr double share_at_edges = 2; // of those taken, for the area across edges
-constexpr double by_rounding = 1e-9; // of a length
-
-struct Facet {
-    Triangle3 at{};
-    Real3 normal{};   // of length 1
-    Real3 lo{}, hi{}; // of the box about it
-};
-
-// Whether a triangle and a box may have a point in common: no axis across which both lie apart.
-bool may_touch(const Triangle3 &t, const Real3 &middle, const Real3 &half) {
-    Triangle3 p;
-    for (std::size_t k = 0; k < 3; ++k) p[k] = minus(t[k], middle);
-    const auto apart = [&](const Real3 &axis) {
-        double lo = unbounded, hi = -unbounded, reach = 0;
-        for (const Real3 &at : p) {
-            const double s = inner(at, axis);
-            lo = std::min(lo, s), hi = std::max(hi, s);
-        }
-        for (std::size_t i = 0; i < 3; ++i) reach += std::fabs(axis[i]) * half[i];
-        const double spare = by_rounding * (std::fabs(lo) + std::fabs(hi) + reach);
-        return lo > reach + spare || hi < -reach - spare;
-    };
-    for (std::size_t i = 0; i < 3; ++i) {
-        Real3 axis{};
-        axis[i] = 1;
-        if (apart(axis)) return false;
-    }
-    const std::array<Real3, 3> sides{minus(t[1], t[0]), minus(t[2], t[1]), minus(t[0], t[2])};
-    if (apart(outer(sides[0], sides[1]))) return false;
-    for (std::size_t i = 0; i < 3; ++i)
-        for (const Real3 &side : sides) {
-            Real3 axis{};
-            axis[i] = 1;
-            if (apart(outer(axis, side))) return false;
-        }
-    return true;
-}
-
-std::optional<Real3> unit_of(const Real3 &way) {
-    const double length = std::sqrt(inner(way, way));
-    if (!(length > 0 && std::isfinite(length))) return std::nullopt;
-    return Real3{way[0] / length, way[1] / length, way[2] / length};
-}
-
-// A way that passes as many facets outward as can be, by turns towards the one that it passes worst.
-std::optional<Real3> way_across(const std::vector<Facet> &facets,
-                                const std::vector<std::uint32_t> &touched) {
-    constexpr int most_turns = 32;
-    constexpr double enough = 0.7; // a cosine
-    Real3 sum{};
-    for (const std::uint32_t t : touched) sum = along(sum, facets[t].normal, 1);
-    std::optional<Real3> way = unit_of(sum), best = way;
-    double most = -unbounded;
-    for (int turn = 0; way && turn < most_turns && most < enough; ++turn) {
-        double least = unbounded;
-        std::uint32_t worst = 0;
-        for (const std::uint32_t t : touched)
-            if (const double passed = inner(facets[t].normal, *way); passed < least)
-                least = passed, worst = t;
-        if (least > most) most = least, best = way;
-        way = unit_of(along(*way, facets[worst].normal, 1.0 / (2 + turn)));
-    }
-    return best;
-}
-
-// Whether a way from one point to another crosses a triangle; none where it comes near to its sides.
-std::optional<bool> crosses(const Real3 &from, const Real3 &to, const Triangle3 &t) {
-    const auto volume = [](const Real3 &a, const Real3 &b, const Real3 &c, const Real3 &d) {
-        const Real3 u = minus(b, a), v = minus(c, a), w = minus(d, a);
-        const double size = std::sqrt(inner(u, u) * inner(v, v) * inner(w, w));
-        const double six = inner(outer(u, v), w);
-        return std::fabs(six) > by_rounding * size ? six : 0;
-    };
-    const double start = volume(t[0], t[1], t[2], from), end = volume(t[0], t[1], t[2], to);
-    if (start == 0 || end == 0) return std::nullopt;
-    if ((start > 0) == (end > 0)) return false;
-    std::array<double, 3> about{};
-    for (std::size_t k = 0; k < 3; ++k) about[k] = volume(from, to, t[k], t[(k + 1) % 3]);
-    for (const double v : about)
-        if (v == 0) return std::nullopt;
-    return (about[0] > 0) == (about[1] > 0) && (about[1] > 0) == (about[2] > 0);
-}
 
 // A leaf of the octree.
 struct Leaf {
@@ -119,6 +39,7 @@ struct ShapeProver {
     double kernels = 0;                // so many may be looked at yet
     std::optional<SteadyBox> steady{}; // of the box that was found to be so last,
     Block steady_in{};                 // … which this is
+    std::optional<Unknown> unknown{};  // why the last box was not known
     ShapeSums sums{};                  // of steady boxes of a task
     std::array<int, 32> failed{}; // boxes of a level above leaves, one after the other, of a task
 
@@ -178,7 +99,10 @@ struct ShapeProver {
         if (!touched.empty() && !(across && passes(*across))) return Answer::No;
         const std::optional<Rising> rising = rising_over(evaluator, tape, splitter.boxes, wide.lo,
                                                          wide.hi, across.value_or(Real3{}));
-        if (!rising) return Answer::Unknown;
+        if (!rising) {
+            unknown = why_unknown(evaluator, tape);
+            return Answer::Unknown;
+        }
         const Linear &linear = rising->linear;
         const auto is_so = [&](const Real3 &way, double least) {
             steady = steady_box(linear, way, least), steady_in = wide;
@@ -290,10 +214,13 @@ struct ShapeProver {
 // What is known of the leaves of a task.
 struct ShapeFound {
     bool looked = false;
-    std::size_t open = 0;    // leaves in which it is not known
-    Real3 place{};           // one of them
-    std::size_t unknown = 0; // of these, those of which no slopes are known
-    std::vector<Cell> cells; // those that smaller ones may tell of
+    std::size_t open = 0;         // leaves in which it is not known
+    Real3 place{};                // one of them
+    std::size_t unknown = 0;      // of these, those of which no slopes are known,
+    std::optional<Unknown> why{}; // … of the one about the place
+    std::size_t unseen = 0;       // those that were not looked at,
+    bool dear = false;            // … since that takes too much
+    std::vector<Cell> cells;      // those that smaller ones may tell of
     ShapeSums sums;
 };
 
@@ -321,8 +248,11 @@ struct ShapeTask {
                 found.place[i] = 0.5 * (double(box.lo[i]) + box.hi[i]);
             found.open += count;
         };
-        if (found.unknown >= hopeless || found.open >= too_many || prover.kernels < 0)
+        if (found.unknown >= hopeless || found.open >= too_many || prover.kernels < 0) {
+            found.unseen += last - first;
+            found.dear = found.dear || prover.kernels < 0;
             return leave_open(last - first);
+        }
         std::vector<std::uint32_t> near;
         grid.find(real(wide.lo), real(wide.hi), near);
         const TapePtr shorter = tape_in(prover.splitter, tape, wide);
@@ -332,8 +262,13 @@ struct ShapeTask {
             const auto answer = prover.prove(*shorter, box, leaf, leaf.touched, halvings_of_leaf);
             if (answer == ShapeProver::Answer::Yes) return;
             if (answer == ShapeProver::Answer::No) found.cells.push_back(leaves[first]);
-            found.unknown += answer == ShapeProver::Answer::Unknown;
-            return leave_open(1);
+            leave_open(1);
+            if (answer != ShapeProver::Answer::Unknown) return;
+            if (found.unknown++ > 0) return;
+            for (std::size_t i = 0; i < 3; ++i)
+                found.place[i] = 0.5 * (double(box.lo[i]) + box.hi[i]);
+            found.why = prover.unknown;
+            return;
         }
         int &failed = prover.failed[static_cast<std::size_t>(level)];
         if (last - first > 1 && failed < most_failed) {
@@ -404,31 +339,20 @@ std::vector<std::vector<Cell>> leaves_by_task(const Made &made, const Certificat
 
 void prove_shape(const Field &field, const Settings &settings, const Made &made, Progress &progress,
                  Certificate &certificate, double work) {
-    certificate.shape.proved = false;
-    certificate.shape.open = 0;
-    certificate.shape.cells.clear();
+    certificate.shape = ShapeAnswer{};
     if (made.simplified > 0 || made.widened != 0) return;
     const Lattice &lattice = made.octree.lattice;
     const std::vector<std::vector<Cell>> tasks = leaves_by_task(made, certificate);
     std::vector<Facet> facets;
     Grid grid(point_of(lattice, {0, 0, 0}), lattice.side(lattice.level));
     for (const auto &t : made.mesh.triangles) {
-        Facet facet;
-        for (std::size_t k = 0; k < 3; ++k) facet.at[k] = real(made.mesh.vertices[t[k]]);
-        facet.normal =
-            unit_of(outer(minus(facet.at[1], facet.at[0]), minus(facet.at[2], facet.at[0])))
-                .value_or(Real3{});
-        Real3 lo = facet.at[0], hi = lo;
-        for (const Real3 &p : facet.at)
-            for (std::size_t i = 0; i < 3; ++i)
-                lo[i] = std::min(lo[i], p[i]), hi[i] = std::max(hi[i], p[i]);
-        facet.lo = lo, facet.hi = hi;
-        grid.add(lo, hi, static_cast<std::uint32_t>(facets.size()));
-        facets.push_back(facet);
+        const Facet &facet = facets.emplace_back(facet_of(made.mesh, t));
+        grid.add(facet.lo, facet.hi, static_cast<std::uint32_t>(facets.size() - 1));
     }
     grid.sort();
     std::size_t leaves = 0;
     for (const std::vector<Cell> &task : tasks) leaves += task.size();
+    work = std::max(work, work_a_leaf * static_cast<double>(leaves));
     // Some tasks from everywhere at once: where they leave too much open the others say nothing more.
     std::vector<ShapeFound> found(tasks.size());
     const std::size_t rounds = (tasks.size() + tasks_at_once - 1) / tasks_at_once;
@@ -447,7 +371,8 @@ void prove_shape(const Field &field, const Settings &settings, const Made &made,
         if (open > few_open_leaves || vain) {
             for (std::size_t k = 0; k < count; ++k) {
                 const std::vector<Cell> &unseen = tasks[number_of(k)];
-                found[number_of(k)].open = unseen.size();
+                found[number_of(k)].open = found[number_of(k)].unseen = unseen.size();
+                found[number_of(k)].dear = open <= few_open_leaves;
                 found[number_of(k)].place = real(point_of(lattice, unseen[0].at));
             }
             continue;
@@ -472,24 +397,24 @@ void prove_shape(const Field &field, const Settings &settings, const Made &made,
         }
     }
     progress.from = from, progress.to = to;
-    bool placed = false;
+    ShapeAnswer &shape = certificate.shape;
     ShapeSums sums;
+    int told = 0; // how much the place that is named tells: of one that was looked at, and of why
     for (const ShapeFound &of : found) {
         sums.add(of.sums);
-        if (of.open > 0 && (of.looked ? !placed : certificate.shape.open == 0))
-            certificate.shape.place = of.place;
-        placed = placed || (of.looked && of.open > 0);
-        certificate.shape.open += of.open;
-        certificate.shape.cells.insert(certificate.shape.cells.end(), of.cells.begin(),
-                                       of.cells.end());
+        shape.open += of.open, shape.unknown += of.unknown, shape.unseen += of.unseen;
+        shape.dear = shape.dear || of.dear;
+        shape.cells.insert(shape.cells.end(), of.cells.begin(), of.cells.end());
+        const int tells = of.open == 0 ? 0 : of.why ? 3 : of.looked ? 2 : 1;
+        if (tells <= told) continue;
+        told = tells, shape.place = of.place, shape.why = of.why;
     }
-    certificate.shape.proved = certificate.shape.open == 0 && !progress.cancelled;
-    certificate.shape.area = {sums.area.lo * (1 - rounding_share),
-                              sums.area.hi * (1 + rounding_share)};
+    shape.proved = shape.open == 0 && !progress.cancelled;
+    shape.area = {sums.area.lo * (1 - rounding_share), sums.area.hi * (1 + rounding_share)};
     // Of what is neither left out as inside or outside nor here, nothing is said.
     const double sizes = rounding_share * certificate.largest_volume;
-    certificate.shape.volume = {certificate.least_volume + sums.volume.lo - sizes,
-                                certificate.largest_volume - (sums.whole - sums.volume.hi) + sizes};
+    shape.volume = {certificate.least_volume + sums.volume.lo - sizes,
+                    certificate.largest_volume - (sums.whole - sums.volume.hi) + sizes};
 }
 
 } // namespace fathom::mesh

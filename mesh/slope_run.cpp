@@ -109,6 +109,7 @@ struct SlopeRunner {
         if (follow(program().loops[parts().table[id].target], rows)) return;
         run_ranges(id, {&rows, 1});
         forget(id);
+        blame(id, std::nullopt);
     }
 
     // Nothing is known of what a step writes.
@@ -116,6 +117,27 @@ struct SlopeRunner {
         const cpu::Part &part = parts().parts[id];
         for (std::uint32_t n = 0; n < part.writes; ++n)
             slopes.forget(parts().slots[part.first_slot + n]);
+    }
+
+    // Says of what a step writes and is not known why: since an input is not, or by the step itself.
+    void blame(std::uint32_t id, const std::optional<Missing> &of_inputs) {
+        const cpu::Step &step = parts().table[id];
+        const cpu::Part &part = parts().parts[id];
+        Missing own{step.kind, {}};
+        if (step.kind == cpu::StepKind::Run) own.kernel = cpu::kernel_of_variant(step.target);
+        for (std::uint32_t n = 0; n < part.writes; ++n) {
+            const std::size_t slot = parts().slots[part.first_slot + n];
+            if (!slopes.number(slot).known)
+                slopes.memory.slots[slot].missing = of_inputs.value_or(own);
+        }
+    }
+
+    std::optional<Missing> missing_of_inputs(std::uint32_t id) const {
+        const cpu::Step &step = parts().table[id];
+        const cpu::Part &part = parts().parts[id];
+        for (std::uint32_t n = part.writes; n < part.operands; ++n)
+            if (const auto of = slopes.missing_at(parts().operands[step.operands + n])) return of;
+        return std::nullopt;
     }
 
     // The ranges alone. `loops`: the rows of a loop.
@@ -137,6 +159,7 @@ struct SlopeRunner {
             step.kind == cpu::StepKind::Run && !step.once && part.writes == (waves ? 2u : 1u);
         std::array<Varying, 2> made;
         if (plain) take_operands(step, part, waves, made);
+        const std::optional<Missing> missing = missing_of_inputs(id);
         run_ranges(id, {});
         forget(id);
         // One number all over the box, as the copy of a repetition, or a row: it does not change.
@@ -149,6 +172,7 @@ struct SlopeRunner {
                     evaluator.ranges.lo[to] == evaluator.ranges.hi[to];
         for (std::uint32_t n = 0; plain && n < part.writes; ++n)
             if (!slopes.shared(operands[n])) put(step, operands[n], waves, made[n], number);
+        blame(id, missing);
     }
 
     // What a kernel gives, by what its inputs are before it runs.
@@ -251,6 +275,13 @@ void Slopes::forget(std::size_t slot) const {
     of.zeros.known = false;
     of.zeros.sheets.clear();
     of.alternatives = {};
+    of.missing.reset();
+}
+
+std::optional<Missing> Slopes::missing_at(std::uint32_t address) const {
+    if (shared(address)) return std::nullopt;
+    const SlopeMemory::Slot &of = memory.slots[slot(address)];
+    return of.run == memory.run && !of.number.known ? of.missing : std::nullopt;
 }
 
 void Slopes::read(std::uint32_t address, Varying &found) const {

@@ -11,6 +11,13 @@
 
 namespace fathom::mesh {
 
+// Why no slopes are known of a number: which step's result has none.
+struct Missing {
+    cpu::StepKind kind = cpu::StepKind::Run;
+    cpu::Kernel kernel{}; // of a Run
+    bool operator==(const Missing &) const = default;
+};
+
 // One thread's memory for what is known of numbers by slot: the registers of a tape, and what all
 // points share. What an earlier run left is no part of a later one.
 struct SlopeMemory {
@@ -18,7 +25,8 @@ struct SlopeMemory {
         std::uint64_t run = 0; // that wrote it
         Varying number;
         Zeros zeros;
-        Alternatives alternatives; // known where it is no single one
+        Alternatives alternatives;      // known where it is no single one
+        std::optional<Missing> missing; // … of a number that is not known
     };
     std::vector<Slot> slots;
     std::uint64_t run = 0;
@@ -46,6 +54,7 @@ struct Slopes {
         return found;
     }
     Zeros zeros_at(std::uint32_t address) const;
+    std::optional<Missing> missing_at(std::uint32_t address) const;
     Alternatives alternatives_at(std::uint32_t address, const Varying &number) const;
 };
 

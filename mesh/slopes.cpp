@@ -177,7 +177,8 @@ std::optional<Linear> linear_in(const CutField &cut, const Evaluator &evaluator,
                                 const Point &hi) {
     const Varying &number = cut.number;
     if (!number.known || (number.jumps && !evaluator.field.proved)) return std::nullopt;
-    const Linear linear = linear_of(number, cut.middle, lo, hi);
+    Linear linear = linear_of(number, cut.middle, lo, hi);
+    linear.jumps = number.jumps;
     return std::isfinite(linear.value + linear.off) ? std::optional(linear) : std::nullopt;
 }
 
@@ -201,6 +202,18 @@ std::optional<Rising> rising_over(Evaluator &evaluator, const cpu::ShortTape &ta
     if (!linear) return std::nullopt;
     const Interval rise = cut.number.slope[3];
     return Rising{*linear, rise.lo - 1e-9 * size(rise)};
+}
+
+Unknown why_unknown(const Evaluator &evaluator, const cpu::ShortTape &tape) {
+    const Field &field = evaluator.field;
+    const cpu::Program::Slot &result = field.program.results[0];
+    if (tape.steps.size() > longest_tape) return {Unknown::Why::TooLong, {}};
+    if (result.shared || !evaluator.slopes) return {};
+    const Slopes slopes{field.parts, evaluator.ranges, *evaluator.slopes};
+    if (const auto missing = slopes.missing_at(result.address))
+        return {Unknown::Why::Step, *missing};
+    const bool jumps = slopes.at(result.address).jumps && !field.proved;
+    return {jumps ? Unknown::Why::Jump : Unknown::Why::NoNumber, {}};
 }
 
 namespace {

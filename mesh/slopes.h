@@ -46,6 +46,19 @@ std::optional<Rising> rising_over(Evaluator &evaluator, const cpu::ShortTape &ta
                                   cpu::Boxes &boxes, const Point &lo, const Point &hi,
                                   const std::array<double, 3> &along);
 
+// After `rising_over` had none, with the same tape: why the field's slopes are not known.
+struct Unknown {
+    enum class Why {
+        Step,     // of that step no slopes are known there
+        TooLong,  // the tape
+        Jump,     // the field may jump there: its bound is not proved
+        NoNumber, // it is not finite
+    } why = Why::NoNumber;
+    Missing missing{};
+    bool operator==(const Unknown &) const = default;
+};
+Unknown why_unknown(const Evaluator &evaluator, const cpu::ShortTape &tape);
+
 // What the surface in a box is part of. Not known where the field's bound is not proved: it may jump.
 struct Border {
     Zeros zeros;                  // of the field

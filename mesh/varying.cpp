@@ -1,5 +1,7 @@
 #include "mesh/varying.h"
 
+#include "mesh/stepped.h"
+
 #include "ir/blends.h"
 
 #include <algorithm>
@@ -14,8 +16,8 @@ constexpr double unit_roundoff = 0x1.01p-24; // of sums, products and quotients,
 constexpr double of_roots = 0x1p-22;         // … and of what is not rounded right
 constexpr Interval one{1, 1}, minus_one{-1, -1};
 
-// f(a, b, …) of which the partial derivatives lie within `by`; its own rounding is part of the sizes
-// of `terms`, what is added up.
+} // namespace
+
 Varying chained(std::initializer_list<std::pair<const Varying *, Interval>> parts, double terms) {
     Varying made;
     made.known = true;
@@ -28,6 +30,8 @@ Varying chained(std::initializer_list<std::pair<const Varying *, Interval>> part
     }
     return made;
 }
+
+namespace {
 
 // a·x + b·y + …
 Varying sum_of_products(const Varying *a, const Varying *b, std::size_t count) {
@@ -198,21 +202,6 @@ Varying negative(const Varying &a) {
     return made;
 }
 
-// a < b: true or false, as far as `beyond` from where that changes for sure: what both numbers are off
-// over the slope of what they differ by. That is taken to be 1 where it is not known, as where decisions
-// are proved (docs/trusted.md, 2).
-Varying comparison_of(const Varying &a, const Varying &b) {
-    const Varying difference = minus(a, b);
-    double slope = 0;
-    for (const Interval &along : difference.slope) slope = std::max({slope, along.lo, -along.hi});
-    Varying made;
-    made.known = difference.known;
-    made.range = {0, 1};
-    made.jumps = true; // it may be read as a number
-    made.beyond = difference.error / (slope > 0 ? slope : 1);
-    return made;
-}
-
 Varying selected(const Varying &choice, const Varying &a, const Varying &b) {
     if (choice.range.lo > 0) return a;
     if (choice.range.hi <= 0) return b;
@@ -368,10 +357,12 @@ Varying through(Kernel kernel, const std::vector<Varying> &in) {
         Varying made;
         made.known = in[0].known && in[1].known;
         made.range = {0, 1};
+        made.error = std::max(in[0].error, in[1].error);
         return made;
     }
-    const Varying blend = blend_of_several(kernel, in);
-    return blend.known ? blend : one_of_several(kernel, in);
+    for (const auto other : {blend_of_several, one_of_several})
+        if (const Varying made = other(kernel, in); made.known) return made;
+    return stepped(kernel, in);
 }
 
 } // namespace fathom::mesh

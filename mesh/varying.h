@@ -57,6 +57,9 @@ struct Varying {
     } half{};
 };
 
+// f(a, b, …) of which the partial derivatives lie within `by`; its own rounding is part of the sizes
+// of `terms`, what is added up.
+Varying chained(std::initializer_list<std::pair<const Varying *, Interval>> parts, double terms);
 // What kernels of one output give; others are not known.
 Varying through(cpu::Kernel kernel, const std::vector<Varying> &in);
 // The sine of an angle, or its cosine.

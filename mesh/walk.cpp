@@ -41,11 +41,22 @@ Known known_in(Splitter &splitter, const cpu::ShortTape &tape, const Block &bloc
     if (known.linear && walk.flat) flatten(*known.linear);
     if (known.linear && fully)
         known.slant = slant_in(evaluator, tape, boxes, block.lo, block.hi, *known.linear);
-    if (known.slant ? known.slant->most < poor : known.linear && !fully && is_steady(*known.linear))
+    const bool jumps = known.linear && known.linear->jumps;
+    if (known.slant ? known.slant->most < (jumps ? across_edge : poor)
+                    : known.linear && !fully && is_steady(*known.linear))
         return known;
     Border border = border_over(evaluator, tape, boxes, block.lo, block.hi);
     known.zeros = std::move(border.zeros);
     if (walk.flat) std::ranges::for_each(known.zeros.sheets, flatten);
+    if (jumps && known.slant && border.like) {
+        const std::optional<Slant> other = slant_of(*border.like);
+        if (other && other->most < known.slant->most)
+            known.linear = border.like, known.slant = other;
+    }
+    if (known.slant && known.slant->most < poor) {
+        known.zeros = {};
+        return known;
+    }
     if (known.slant) {
         if (known.zeros.known || known.slant->most > useless) known.slant.reset();
         return known;
@@ -113,7 +124,7 @@ void walk_piece(Splitter &splitter, const cpu::ShortTape &tape, const Block &pie
                                       more <= (slant || zeros.known ? for_places - for_edges : 0));
     if (slant && (slant->most < well || last || (levels <= 0 && slant->most < across_edge)))
         return walk_graph(splitter, tape, piece, linear, *slant, std::max(levels, 0), walk, sums);
-    const bool asked = linear && !slant && spare >= price;
+    const bool asked = linear && !linear->jumps && !slant && spare >= price;
     if (asked) spare -= of_seam * price;
     const bool touches =
         asked && seam_in(splitter.evaluator, tape, splitter.boxes, piece.lo, piece.hi, walk.thin);

@@ -17,6 +17,7 @@ struct Linear {
     double rounding = 0; // so much of `off` is what floats are off
     std::array<double, 3> slope{};
     std::array<double, 3> spread{}; // along each axis its slopes are no farther than this from that
+    bool jumps = false; // on the way to it something does: what it is near its zeros may tell more
     bool operator==(const Linear &) const = default;
 };
 

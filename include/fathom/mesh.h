@@ -78,8 +78,10 @@ struct MeshCertificate {
     long genus = 0;                  /**< of the mesh, all its components together */
     /** It is proved that the solid's surface has as many components as the mesh, and handles. Else it
      *  is open in `shape_open` cells, one of them about `shape_place`; in none where it was not
-     *  looked for, as where walls thinner than cells were drawn wider. */
+     *  looked for, as where walls thinner than cells were drawn wider. `shape_why` says why, and what
+     *  to write; it is empty where it is proved. In lower case. */
     bool shape_proved = false;
+    std::string shape_why;
     std::size_t shape_open = 0;
     std::array<double, 3> shape_place{};
     /** Walls, gaps or edges are seen that cells are too large for: the solid may have another number
@@ -88,10 +90,12 @@ struct MeshCertificate {
     /** The solid's volume lies between these. */
     double least_volume = 0, largest_volume = 0;
     /** So does the area of its surface. `largest_area` is infinite where in `open_places` of the
-     *  smallest boxes it is not known how the surface runs, one of them about `open_place`. */
+     *  smallest boxes it is not known how the surface runs, one of them about `open_place`;
+     *  `area_why` says why, and what looks closer. */
     double least_area = 0, largest_area = 0;
     std::size_t open_places = 0;
     std::array<double, 3> open_place{};
+    std::string area_why;
     /** Whether `largest_area` was looked for: not where the field's operations in all open cells are
      *  too many. `measure` looks for it all the same. */
     bool looked_for_area = true;

@@ -123,6 +123,21 @@ TEST_CASE("--certify says whether anything is proved, with a document and withou
                              "; the solid's surface is in one piece and 0 handles; the solid's "
                              "volume lies between "})
         CHECK(contains(on.err, part));
+    // Where pieces and handles are not proved it is said why, and what of it is proved.
+    folder.write("cone.sdf", "cone(0.6, 1)\n");
+    const std::string cone = "fathom mesh cone.sdf --resolution 48 -o a.stl ";
+    const Result line = shell(folder, cone + "--certify on");
+    for (const char *part :
+         {"a.stl: certified: all of the mesh lies within 0.",
+          "; whether pieces nearer than that are apart, and narrower holes open, "
+          "is not proved: how fast the field changes near [",
+          "] is not known, by a root of what may be 0 (`sqrt`; cones, frames and "
+          "polygons take one): what is made without that is proved alone"})
+        CHECK(contains(line.err, part));
+    const Result document = shell(folder, cone + "--json");
+    for (const char *part : {"\"proved\":[\"distances\"", "\"components\":null",
+                             "\"doubted\":false,\"why\":\"how fast the field changes near ["})
+        CHECK(contains(document.out, part));
     const Result off = shell(folder, make + "--json --certify off");
     CHECK((off.exit == 0 && off.err.empty()));
     for (const char *part : {"{\"status\":\"unproved\",", "\"mesh_components\":1",

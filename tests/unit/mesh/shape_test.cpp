@@ -228,6 +228,35 @@ TEST_CASE("two balls that all but touch are never proved to be in the wrong numb
     CHECK(certified >= proved);
 }
 
+TEST_CASE("a shape that is not proved says why") {
+    using Why = mesh::Unknown::Why;
+    const auto why_of = [](const std::string &text, int resolution) {
+        const mesh::Mended mended = mended_of(text, resolution);
+        REQUIRE(mended.made.failure == mesh::Failure::None);
+        CHECK_FALSE(mended.certificate.shape.proved);
+        CHECK(mended.certificate.shape.open > 0);
+        return mended.certificate.shape;
+    };
+    const auto step_of = [&](const std::string &text) {
+        const mesh::ShapeAnswer shape = why_of(text, 24);
+        REQUIRE(shape.why);
+        CHECK(shape.unknown > 0);
+        CHECK(shape.why->why == Why::Step);
+        return shape.why->missing;
+    };
+    using cpu::Kernel;
+    using cpu::StepKind;
+    CHECK(step_of("cone(0.6, 1)") == mesh::Missing{StepKind::Run, Kernel::SqrtF});
+    CHECK(step_of("sphere(1).displace(p => 0.02 * noise(4 * p))") ==
+          mesh::Missing{StepKind::Run, Kernel::Perlin});
+    // Of what it was looked at in vain the cells are too large.
+    const mesh::ShapeAnswer coarse =
+        why_of("sphere(0.7305) | sphere(0.375).translate(x: 1.1055)", 16);
+    CHECK_FALSE(coarse.why);
+    CHECK(coarse.unknown == 0);
+    CHECK(coarse.unseen < coarse.open);
+}
+
 TEST_CASE("a mesh that joins what is apart is not proved to have the solid's shape") {
     mesh::Settings settings;
     settings.resolution = 16;
