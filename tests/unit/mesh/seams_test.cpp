@@ -96,7 +96,7 @@ TEST_CASE("parts that are flush leave nothing undecided, however they lie") {
               0.25, 4, 0},
          }) {
         INFO(text);
-        const mesh::Mended made = mesh::make_certified_mesh(flush_scene(text), fine_cells(40));
+        const mesh::Mended made = mesh::make_certified_mesh(flush_scene(text), fine_cells(30));
         REQUIRE(made.made.failure == mesh::Failure::None);
         CHECK(made.certificate.undecided.empty());
         CHECK(made.certificate.certified());
@@ -182,9 +182,9 @@ TEST_CASE("past a tool that ends a hair beyond a face nothing is in doubt") {
                              "capped_cone(6, 40, 40) - capped_cone(4.4, 38.4, 40.02)",
                              "(box(20) - cylinder(5, 20.01)).rotate(0.4, axis: [2, 1, 0])"}) {
         INFO(text);
-        const mesh::Made plain = mesh::make_mesh(flush_scene(text), fine_cells(64));
+        const mesh::Made plain = mesh::make_mesh(flush_scene(text), fine_cells(40));
         CHECK(plain.octree.undecided.empty());
-        const mesh::Mended made = mesh::make_certified_mesh(flush_scene(text), fine_cells(64));
+        const mesh::Mended made = mesh::make_certified_mesh(flush_scene(text), fine_cells(40));
         CHECK(made.certificate.certified());
         CHECK(made.certificate.components == 1);
         CHECK(made.certificate.divisions < 10'000);

@@ -114,7 +114,7 @@ TEST_CASE("where paints meet, triangles stay as they are") {
 
 TEST_CASE("simplified meshes do not depend on the number of threads") {
     const char *text = "gyroid(0.5, thickness: 0.1) & box(1)";
-    const Fewer one = fewer(text, 48, 0.3, 1), five = fewer(text, 48, 0.3, 5);
+    const Fewer one = fewer(text, 32, 0.3, 1), five = fewer(text, 32, 0.3, 5);
     CHECK(one.simplified.mesh.vertices == five.simplified.mesh.vertices);
     CHECK(one.simplified.mesh.triangles == five.simplified.mesh.triangles);
 }
