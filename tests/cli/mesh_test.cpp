@@ -112,6 +112,25 @@ TEST_CASE("what is too fine or too coarse says what would do, and soon") {
         }
 }
 
+TEST_CASE("a mesh whose end is not found by the work that is spent says so, and what to write") {
+    ScratchFolder folder;
+    folder.write(
+        "copies.sdf",
+        "stairs_intersection(0.236, 4) {\n"
+        "  tubes([[-0.442, -0.489, -0.806], [0.205, 0.167, 0.301], [-0.626, 0.22, -0.666]], "
+        "0.111)\n  octahedron(0.516).translate([-0.0482, 0.32, 0.0235])\n"
+        "}.repeat_mirror([0, 2.89, 0])\n");
+    const Result made = shell(folder, "fathom mesh copies.sdf --resolution 15 -o a.stl");
+    CHECK(made.exit != 0);
+    CHECK(contains(made.err,
+                   "no mesh: where the solid ends was not found by the work that is spent "
+                   "on it: say it by bounds, or in the scene, as with `& box(10)`; here "
+                   "`--bounds X,Y,Z,X,Y,Z` does it"));
+    const Result cut =
+        shell(folder, "fathom mesh copies.sdf --resolution 15 --bounds=-1,-1,-1,1,1,1 -o a.stl");
+    CHECK(cut.exit == 0);
+}
+
 TEST_CASE("--certify says whether anything is proved, with a document and without one") {
     ScratchFolder folder;
     folder.write("ball.sdf", "sphere(1)\n");
