@@ -340,6 +340,9 @@ class Remedy {
             for (const Argument &a : args_)
                 if (&a == &args_[i] || (a.name && a.name->text == "at"))
                     fix_.edits.push_back({a.name->span, &a == &args_[i] ? "at" : "look_at"});
+        } else if (chooses_rows(function_, name)) {
+            say("a field is given one point, not rows of them: leave `axis` away");
+            leave(i);
         } else if (function_ == "light" && name == "type") {
             say("a light from afar is `sun(direction: …)`, any other has no type");
             leave(i);

@@ -201,6 +201,20 @@ static const lang::Function *function_of_parameter(const File &ast, Span declare
     return nullptr;
 }
 
+bool report_undeclared(Interpreter &ev, std::string_view name, Span at, Span assignment,
+                       bool in_body) {
+    Diagnostic &d =
+        report(ev, Code::UnknownName, at, fmt::format("nothing here is called `{}`", name));
+    if (const auto way = way_from_elsewhere(name); !way.empty()) {
+        d.help(std::string(way));
+        return false;
+    }
+    if (!assignment.source) return false;
+    d.help(fmt::format("declare it: `let {0} = …`, or `var {0} = …` where it changes", name),
+           {{{assignment.source, assignment.begin, assignment.begin}, in_body ? "var " : "let "}});
+    return true;
+}
+
 void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span place,
                 std::uint32_t frame) {
     std::vector<Accessor> path;
@@ -228,19 +242,10 @@ void run_assign(Interpreter &ev, const File &ast, const lang::Assign &node, Span
     }
     auto found = find_name(ev, frame, symbol_of(ast, *name));
     if (!found) {
-        Diagnostic &d = report(ev, Code::UnknownName, base.span,
-                               fmt::format("nothing here is called `{}`", name->text));
-        if (const auto way = way_from_elsewhere(name->text); !way.empty()) {
-            d.help(std::string(way));
-            return;
-        }
-        if (!node.op && path.empty()) {
-            const bool in_body = !ev.frames[frame].index;
-            d.help(fmt::format("declare it: `let {} = …`, or `var {} = …` where it changes",
-                               name->text, name->text),
-                   {{{place.source, place.begin, place.begin}, in_body ? "var " : "let "}});
+        const bool in_body = !ev.frames[frame].index;
+        const Span whole = !node.op && path.empty() ? place : Span{};
+        if (report_undeclared(ev, name->text, base.span, whole, in_body))
             declare(ev, frame, symbol_of(ast, *name), poison(), in_body, base.span);
-        }
         return;
     }
     const Binding binding = ev.frames[found->frame].bindings[found->slot];

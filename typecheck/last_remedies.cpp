@@ -446,4 +446,10 @@ Fix smooth_form(const Interpreter &ev, std::string_view function, std::span<cons
     return fix;
 }
 
+bool chooses_rows(std::string_view function, std::string_view argument) {
+    constexpr std::array<std::string_view, 7> names = {"length", "min", "max",      "sum",
+                                                       "dot",    "abs", "normalize"};
+    return argument == "axis" && std::ranges::find(names, function) != names.end();
+}
+
 } // namespace fathom::typecheck

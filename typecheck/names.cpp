@@ -224,7 +224,7 @@ struct NameWalk {
         else if (auto *v = std::get_if<lang::Var>(&s.kind))
             typed(v->type), expr(v->value), declared(v->name);
         else if (auto *a = std::get_if<lang::Assign>(&s.kind))
-            expr(a->target), expr(a->value);
+            assign(*a, s.span);
         else if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind))
             parameters(ast.functions[f->function]);
         else if (auto *p = std::get_if<lang::Param>(&s.kind))
@@ -244,6 +244,16 @@ struct NameWalk {
             if (r->value) expr(*r->value);
         }
     }
+    void assign(const lang::Assign &a, Span place) {
+        const lang::Expr &target = ast.exprs[a.target];
+        const auto *n = std::get_if<lang::Name>(&target.kind);
+        const bool fresh = n && !a.op && !known(n->text);
+        if (!fresh) expr(a.target);
+        expr(a.value);
+        if (!fresh) return;
+        if (report_undeclared(ev, n->text, target.span, place, true))
+            scopes.back().try_emplace(n->text, target.span);
+    }
     bool is_module(lang::ExprId id) {
         auto *n = std::get_if<lang::Name>(&ast.exprs[id].kind);
         if (!n || local(n->text)) return false;
@@ -262,7 +272,12 @@ struct NameWalk {
             Diagnostic &d = report(ev, Code::UnknownArgument, a.name->span,
                                    fmt::format("`{}` has no argument `{}`", name, a.name->text));
             const std::string near = nearest_name(a.name->text, names);
-            if (!near.empty())
+            if (chooses_rows(name, a.name->text) && &a != &call.arguments.front())
+                d.help("a field is given one point, not rows of them: leave `axis` away",
+                       {{{a.name->span.source, ast.exprs[(&a - 1)->value].span.end,
+                          ast.exprs[a.value].span.end},
+                         ""}});
+            else if (!near.empty())
                 d.help(fmt::format("did you mean `{}`?", near), {{a.name->span, near}});
         }
     }

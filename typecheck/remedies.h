@@ -128,6 +128,12 @@ void help_with_whole(const Interpreter &ev, Diagnostic &d, const Value &v, Span 
 // last argument away; no edits: it is not that.
 Fix smooth_form(const Interpreter &ev, std::string_view function, std::span<const Argument> args,
                 std::size_t at, Span callee);
+// An assignment to a name that nobody declared; without a place where it is to a part of it. Whether
+// it was told to be the name's declaration.
+bool report_undeclared(Interpreter &ev, std::string_view name, Span at, Span assignment,
+                       bool in_body);
+// numpy's `axis` of functions that take one vector here.
+bool chooses_rows(std::string_view function, std::string_view argument);
 // For a vec3 where a vec2 is wanted.
 void help_with_plane(const Interpreter &ev, Diagnostic &d, Span place);
 // Reports that something else was wanted there (convert.cpp), with the way to it.

@@ -223,6 +223,7 @@ class ForeignSyntax : protected TokenReading {
     std::string joined_list(Index open) const;
     bool list_spread(Index at);
     bool loop_among_entries(Index at);
+    bool column_of_rows(Index at);
     bool counted_block(Index first, Index at);
     bool range_in_parentheses(Index at);
     bool foreign_for_words(Index at);

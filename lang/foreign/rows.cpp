@@ -85,6 +85,22 @@ bool ForeignSyntax::list_spread(Index at) {
     return true;
 }
 
+// numpy's `p[:, 0]`, at the colon: a part of the point.
+bool ForeignSyntax::column_of_rows(Index at) {
+    const Index open = at - 1, close = at + 3;
+    if (at == 0 || kind(at) != Tok::Colon || kind(open) != Tok::ListOpen || match(open) != close ||
+        kind(at + 1) != Tok::Comma || kind(at + 2) != Tok::Number)
+        return false;
+    constexpr std::string_view parts = "xyz";
+    const std::size_t which = std::string_view("012").find(text(at + 2));
+    if (which >= parts.size()) return false;
+    failed_ = close;
+    foreign(span(open, close), "a field is given one point, not rows of them")
+        .help(to_write(std::string(".") + parts[which]),
+              {{span(open, close), std::string(".") + parts[which]}});
+    return true;
+}
+
 // `[for i in 0..3 { i }, 7]`, at the comma, and `[7, for i in 0..3 { i }]`, at the loop.
 bool ForeignSyntax::loop_among_entries(Index at) {
     const Index open = enclosing(at), close = match(open);
