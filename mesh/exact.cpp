@@ -156,6 +156,8 @@ int turn_of(const Point &a, const Point &b, const Point &c, std::size_t axis) {
     const double one = (double(b[j]) - a[j]) * (double(c[k]) - a[k]),
                  other = (double(b[k]) - a[k]) * (double(c[j]) - a[j]), whole = one - other;
     if (std::fabs(whole) > error * (std::fabs(one) + std::fabs(other))) return whole > 0 ? 1 : -1;
+    // Of floats that are not equal the difference is not 0, nor is a product of two such.
+    if (one == 0 && other == 0) return 0;
     return sign_of(less(product(difference(b[j], a[j]), difference(c[k], a[k])),
                         product(difference(b[k], a[k]), difference(c[j], a[j]))));
 }

@@ -56,8 +56,10 @@ void find_pinched(const Mesh &mesh, std::vector<Point> &found) {
 // Boxes over triangles, each half of those above it.
 class Halves {
   public:
-    explicit Halves(const Mesh &mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
-        for (std::uint32_t t = 0; t < order_.size(); ++t) order_[t] = t;
+    explicit Halves(const Mesh &mesh) : Halves(mesh, all_of(mesh)) {}
+    // Of some of its triangles.
+    Halves(const Mesh &mesh, std::vector<std::uint32_t> among)
+        : mesh_(mesh), order_(std::move(among)) {
         for (const auto &t : mesh.triangles) {
             Point m{};
             for (const std::uint32_t v : t)
@@ -96,6 +98,11 @@ class Halves {
     }
 
   private:
+    static std::vector<std::uint32_t> all_of(const Mesh &mesh) {
+        std::vector<std::uint32_t> all(mesh.triangles.size());
+        for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
+        return all;
+    }
     struct Part {
         Point lo{}, hi{};
         std::uint32_t first = 0, count = 0, children = 0; // the first of two; 0: none
@@ -370,21 +377,22 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>>
 crossings_with(const Mesh &mesh, const std::vector<std::uint32_t> &asked, unsigned threads,
                Progress &progress) {
     using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-    const Halves halves(mesh);
+    // The boxes are of those that are asked about, so that few of them take little.
+    const Halves halves(mesh, asked);
     std::vector<std::uint8_t> is_asked(mesh.triangles.size(), 0);
     for (const std::uint32_t t : asked) is_asked[t] = 1;
-    std::vector<Pairs> found((asked.size() + checks_at_once - 1) / checks_at_once);
+    const std::size_t count = asked.empty() ? 0 : mesh.triangles.size();
+    std::vector<Pairs> found((count + checks_at_once - 1) / checks_at_once);
     in_parallel(
         found.size(), threads, progress, [] { return std::vector<std::uint32_t>(); },
         [&](std::vector<std::uint32_t> &near, std::size_t number) {
-            const std::size_t end = std::min(asked.size(), (number + 1) * checks_at_once);
+            const std::size_t end = std::min(count, (number + 1) * checks_at_once);
             for (std::size_t k = number * checks_at_once; k < end; ++k) {
-                const std::uint32_t t = asked[k];
-                halves.touching(t, 0, near);
+                const auto t = static_cast<std::uint32_t>(k);
+                halves.touching(t, is_asked[t] ? t + 1 : 0, near);
                 std::ranges::sort(near);
                 for (const std::uint32_t other : near)
-                    if ((other > t || !is_asked[other]) &&
-                        crossing_of(mesh.vertices, mesh.triangles[t], mesh.triangles[other]))
+                    if (crossing_of(mesh.vertices, mesh.triangles[t], mesh.triangles[other]))
                         found[number].push_back({t, other});
             }
         });
