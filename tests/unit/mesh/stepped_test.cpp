@@ -5,7 +5,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <random>
+#include <string>
 
 using namespace fathom;
 
@@ -78,12 +80,11 @@ TEST_CASE("fields made of what jumps have the slopes that are said of them, wher
                     plane += linear.slope[i] * (double(points[k][i]) - middle[i]);
                 CHECK(std::fabs(plane - values[k]) <= linear.off);
                 // Of two points, the field changes by the slopes.
-                double least = 0, most = 0, apart = 0;
+                double least = 0, most = 0;
                 for (std::size_t i = 0; i < 3; ++i) {
                     const double way = double(points[k][i]) - points[0][i];
                     least += linear.slope[i] * way - linear.spread[i] * std::fabs(way);
                     most += linear.slope[i] * way + linear.spread[i] * std::fabs(way);
-                    apart += std::fabs(way);
                 }
                 const double slack = 2 * linear.rounding + 1e-6;
                 CHECK(values[k] - values[0] >= least - slack);
