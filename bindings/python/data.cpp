@@ -140,6 +140,8 @@ void add_data(py::module_ &m) {
         .def_readonly("components", &fathom::MeshCertificate::components)
         .def_readonly("genus", &fathom::MeshCertificate::genus)
         .def_readonly("shape_proved", &fathom::MeshCertificate::shape_proved)
+        .def_readonly("shape_why", &fathom::MeshCertificate::shape_why)
+        .def_readonly("area_why", &fathom::MeshCertificate::area_why)
         .def_readonly("shape_doubted", &fathom::MeshCertificate::shape_doubted);
 }
 
