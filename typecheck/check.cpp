@@ -248,16 +248,16 @@ bool is_flat_field(const lang::Function &f) {
     return f.parameters[0].type->named == lang::TypeName::Vec2;
 }
 
-// The last function of the file that gives a number for a point, by what is written of it; one of a
-// vec2 where there is none of a vec3.
-const lang::Function *last_field(const File &ast) {
+// The last function of the file that gives a number for a point, alone or with more behind it, by
+// what is written of it; one of a vec2 where there is none of a vec3.
+const lang::Function *last_field(const File &ast, bool alone) {
     const lang::Function *out = nullptr;
     for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
         const auto *declared = std::get_if<lang::FunctionDecl>(&s.kind);
         if (!declared) continue;
         const lang::Function &f = ast.functions[declared->function];
-        if (f.parameters.size() != 1 || !f.result || f.result->named != lang::TypeName::Float)
-            continue;
+        const bool so = alone ? f.parameters.size() == 1 : f.parameters.size() > 1;
+        if (!so || !f.result || f.result->named != lang::TypeName::Float) continue;
         const lang::TypeExpr *point = f.parameters[0].type;
         if (point && (point->named == lang::TypeName::Vec3 ||
                       (point->named == lang::TypeName::Vec2 && (!out || is_flat_field(*out)))))
@@ -301,10 +301,14 @@ void report_no_shape(Interpreter &ev, const File &ast, std::uint32_t frame) {
     };
     if (!shape.empty())
         add(std::string(shape));
-    else if (const lang::Function *field = last_field(ast))
+    else if (const lang::Function *field = last_field(ast, true))
         add(is_flat_field(*field)
                 ? fmt::format("implicit2({}, within: ball(3)).extrude(1)", field->name->text)
                 : fmt::format("implicit({}, within: ball(3))", field->name->text));
+    else if (const lang::Function *given = last_field(ast, false))
+        d.help(fmt::format("`{0}(p => {1}(p, …), within: ball(3)){2}` makes a shape of `{1}`",
+                           is_flat_field(*given) ? "implicit2" : "implicit", given->name->text,
+                           is_flat_field(*given) ? ".extrude(1)" : ""));
 }
 
 void build_scene(Interpreter &ev, const std::vector<Contribution> &contributions, const File &ast,

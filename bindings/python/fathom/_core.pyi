@@ -71,6 +71,8 @@ class MeshCertificate:
     components: int
     genus: int
     shape_proved: bool
+    shape_why: str
+    area_why: str
     shape_doubted: bool
 
 class Mesh:
