@@ -15,12 +15,12 @@ std::string number_text(double x) {
 }
 namespace {
 
-// What is less than `nothing` is 0.
-std::string written_point(const std::array<double, 3> &p, int dims, int digits, double nothing) {
+// What is less than `nothing` is 0; `write` gives a number's text.
+template <class Write>
+std::string written_point(const std::array<double, 3> &p, int dims, double nothing, Write write) {
     std::string out = "[";
     for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
-        out += fmt::format("{}{:.{}g}", i > 0 ? ", " : "", std::fabs(p[i]) < nothing ? 0.0 : p[i],
-                           digits);
+        out += (i > 0 ? ", " : "") + write(std::fabs(p[i]) < nothing ? 0.0 : p[i]);
     return out + "]";
 }
 
@@ -35,11 +35,7 @@ double width_of_cell(const std::array<double, 3> &p) {
 } // namespace
 
 std::string point_text(const std::array<double, 3> &p, int dims) {
-    const double nothing = width_of_cell(p);
-    std::string out = "[";
-    for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i)
-        out += (i > 0 ? ", " : "") + number_text(std::fabs(p[i]) < nothing ? 0 : p[i]);
-    return out + "]";
+    return written_point(p, dims, width_of_cell(p), number_text);
 }
 
 std::pair<std::string, std::string> two_numbers(double a, double b) {
@@ -55,9 +51,10 @@ std::pair<std::string, std::string> two_points(const std::array<double, 3> &a,
     constexpr int all_digits = 17;
     std::pair<std::string, std::string> out{point_text(a, dims), point_text(b, dims)};
     for (const double nothing : {std::min(width_of_cell(a), width_of_cell(b)), 0.0})
-        for (int digits = 4; digits <= all_digits && out.first == out.second; ++digits)
-            out = {written_point(a, dims, digits, nothing),
-                   written_point(b, dims, digits, nothing)};
+        for (int digits = 4; digits <= all_digits && out.first == out.second; ++digits) {
+            const auto write = [&](double x) { return fmt::format("{:.{}g}", x, digits); };
+            out = {written_point(a, dims, nothing, write), written_point(b, dims, nothing, write)};
+        }
     return out;
 }
 

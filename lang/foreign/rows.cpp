@@ -104,9 +104,9 @@ bool ForeignSyntax::column_of_rows(Index at) {
 // `[for i in 0..3 { i }, 7]`, at the comma, and `[7, for i in 0..3 { i }]`, at the loop.
 bool ForeignSyntax::loop_among_entries(Index at) {
     const Index open = enclosing(at), close = match(open);
-    if (!is_one_of(kind(open), {Tok::ListOpen, Tok::FreshListOpen}) || close <= at ||
-        kind(kind(at) == Tok::For ? at - 1 : open + 1) !=
-            (kind(at) == Tok::For ? Tok::Comma : Tok::For))
+    const bool begun =
+        kind(at) == Tok::For ? kind(at - 1) == Tok::Comma : kind(open + 1) == Tok::For;
+    if (!begun || !is_one_of(kind(open), {Tok::ListOpen, Tok::FreshListOpen}) || close <= at)
         return false;
     const bool last = at + 1 == close; // `[for i in 0..3 { i }, ]`
     const std::string joined = last ? std::string() : joined_list(open);
