@@ -11,7 +11,13 @@ namespace {
 
 class LispReader {
   public:
-    explicit LispReader(std::string_view text) : text_(text) {}
+    explicit LispReader(std::string_view text) : text_(text) {
+        constexpr std::array<std::string_view, 4> schemes{"(define", "(lambda", "(use-modules",
+                                                          "#["};
+        scheme_ = std::ranges::any_of(schemes, [&](std::string_view word) {
+            return text.find(word) != std::string_view::npos;
+        });
+    }
 
     std::vector<TopForm> all() {
         std::vector<TopForm> out;
@@ -32,7 +38,7 @@ class LispReader {
             const bool vector = c == '#' && at_ + 1 < text_.size() && text_[at_ + 1] == '[';
             if (vector) // Scheme's `#[1 2 3]`
                 ++at_;
-            else if (c == ';' || c == '#')
+            else if ((c == ';' && !splices()) || c == '#')
                 remark();
             else if (c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == ',')
                 ++at_;
@@ -40,6 +46,14 @@ class LispReader {
                 return true;
         }
         return false;
+    }
+
+    // Janet's `;(list)`, and `;list)`, is what the list holds; a comment in Scheme.
+    bool splices() const {
+        if (scheme_ || depth_ == 0 || at_ + 1 >= text_.size()) return false;
+        if (text_[at_ + 1] == '(' || text_[at_ + 1] == '[') return true;
+        const std::size_t end = std::min(text_.find_first_of(" \n()[]|;", at_ + 1), text_.size());
+        return end > at_ + 1 && end < text_.size() && text_[end] == ')';
     }
 
     // The comment at hand, as a line of ours.
@@ -83,6 +97,12 @@ class LispReader {
                 piped = true;
                 continue;
             }
+            if (c == ';') {
+                ++at_;
+                const bool opens = text_[at_] == '(' || text_[at_] == '[';
+                out.parts.push_back(node(Is::Spread, "", {opens ? form() : atom()}));
+                continue;
+            }
             out.parts.push_back(c == '(' || c == '[' ? form() : atom());
         }
         --depth_;
@@ -121,6 +141,7 @@ class LispReader {
     }
 
     std::string_view text_;
+    bool scheme_ = false;
     std::string comment_; // those of the form at hand
     std::size_t at_ = 0;
     int depth_ = 0, count_ = 0, pipes_ = 0;

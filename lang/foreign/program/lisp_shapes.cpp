@@ -12,14 +12,6 @@ namespace {
 
 Written solid_of_lisp(std::string text) { return {std::move(text), as_call, Kind::Solid}; }
 
-std::string head_of(const Node &form) {
-    if (form.is != Is::List || form.text != "(" || form.parts.empty() ||
-        form.parts[0].is != Is::Name)
-        return {};
-    std::string head = form.parts[0].text; // Bauble has `tile:` and `tile*`
-    if (head.size() > 1 && (head.back() == ':' || head.back() == '*')) head.pop_back();
-    return head;
-}
 bool is_vector(const Node &n) { return n.is == Is::List && n.text == "["; }
 
 // `x`, `-y`; empty where it is no axis.
@@ -37,6 +29,16 @@ std::string along(std::string shape, const std::string &axis) {
 }
 
 } // namespace
+
+// What a form calls; empty where it is a value or a vector.
+std::string lisp_head(const Node &form) {
+    if (form.is != Is::List || form.text != "(" || form.parts.empty() ||
+        form.parts[0].is != Is::Name)
+        return {};
+    std::string head = form.parts[0].text; // Bauble has `tile:` and `tile*`
+    if (head.size() > 1 && (head.back() == ':' || head.back() == '*')) head.pop_back();
+    return head;
+}
 
 // A form's parts behind its head: axes, words with `:`, and the rest, in their order.
 Writer::Form Writer::form_of(const Node &n) const {
@@ -91,7 +93,7 @@ Written Writer::lisp(const Node &n) {
         for (const Node &part : n.parts) out += (out.size() > 1 ? ", " : "") + lisp_text(part);
         return {out + "]", as_call, Kind::Vector};
     }
-    const std::string head = head_of(n);
+    const std::string head = lisp_head(n);
     if (head.empty() || n.parts.size() < 2) {
         if (n.parts.size() == 3 && n.parts[1].is == Is::Name &&
             std::string_view("/*+-").find(n.parts[1].text) < 4) // `(tau / 4)`
@@ -169,22 +171,8 @@ Written Writer::lisp_field(const Node &n, bool flat) {
 }
 
 std::optional<Written> Writer::lisp_joined(const std::string &head, const Node &n) {
-    if (head == "apply" && n.parts.size() == 3) { // `(apply union (map f (range 5)))`
-        const Node &list = n.parts[2];
-        if (n.parts[1].text != "union" || head_of(list) != "map" || list.parts.size() != 3)
-            throw Unsure{};
-        const Node &f = list.parts[1], &over = list.parts[2];
-        const bool counts = head_of(over) == "range" || head_of(over) == "iota";
-        const bool lambda = head_of(f) == "fn" || head_of(f) == "lambda";
-        if (!lambda || f.parts.size() != 3 || f.parts[1].parts.size() != 1) throw Unsure{};
-        if (counts && over.parts.size() != 2) throw Unsure{};
-        const std::string range = counts ? "0.." + lisp_text(over.parts[1], 8) : lisp_text(over);
-        scopes_.emplace_back();
-        const std::string name = declare(f.parts[1].parts[0].text, Kind::Number);
-        const std::string body = lisp_text(f.parts[2]);
-        scopes_.pop_back();
-        return solid_of_lisp("union([for " + name + " in " + range + " { " + body + " }])");
-    }
+    if (head == "apply") return lisp_apply(n);
+    if (head == "map" || head == "seq") return lisp_list(n);
     if ((head == "lambda-shape" && n.parts.size() == 3) || head == "shape/3d")
         return lisp_field(n, false);
     if (head == "shape/2d") return lisp_field(n, true);
@@ -199,9 +187,12 @@ std::optional<Written> Writer::lisp_joined(const std::string &head, const Node &
             k = lisp_text(n.parts[++i]);
         else if (part.is == Is::Name && part.text.starts_with(":"))
             throw Unsure{};
+        else if (part.is == Is::Spread)
+            lisp_spread(part.parts[0], parts);
         else
             parts.push_back(lisp(part));
     }
+    if (const auto made = lisp_of_lists(head, parts, k)) return made;
     if (head == "blend") { // libfive: the last is how far
         if (parts.size() != 3 || parts[2].kind != Kind::Number) throw Unsure{};
         k = parts[2].text;
@@ -274,7 +265,7 @@ std::optional<Written> Writer::lisp_solid(const std::string &name, const Form &f
 // `(extrude z 20 s)`, in either order, `(extrude-z s 0 1)`, `(revolve y s)`, `(revolve-y s)`.
 std::optional<Written> Writer::lisp_profile(const std::string &name, const Form &f) {
     const auto of = [&](const Node &flat) {
-        Written w = head_of(flat) == "lambda-shape" ? lisp_field(flat, true) : lisp(flat);
+        Written w = lisp_head(flat) == "lambda-shape" ? lisp_field(flat, true) : lisp(flat);
         if (w.kind != Kind::Flat && w.kind != Kind::Unknown) throw Unsure{};
         return wrapped(w, as_call) + ".";
     };
@@ -329,6 +320,12 @@ std::optional<Written> Writer::lisp_change(const std::string &name, const Node &
                        painted.kind};
     }
     const Written of = lisp(*f.rest[0]);
+    if (of.kind == Kind::Number && f.rest.back() == &n.parts.back() &&
+        lisp(n.parts.back()).kind != Kind::Number) { // `(move x 10 s)`
+        Node same = n;
+        std::rotate(same.parts.begin() + 1, same.parts.end() - 1, same.parts.end());
+        return lisp_change(name, same, form_of(same));
+    }
     const std::string head = wrapped(of, as_call) + ".";
     const auto changed = [&](const std::string &text) {
         return Written{head + text, as_call, of.kind};
@@ -397,7 +394,7 @@ std::optional<Written> Writer::lisp_change(const std::string &name, const Node &
         const std::string parts = at(1);
         return changed("paint(rgb(" + parts.substr(1, parts.size() - 2) + "))");
     }
-    if (head_of(color) == "hsv" && color.parts.size() == 4)
+    if (lisp_head(color) == "hsv" && color.parts.size() == 4)
         return changed("paint(" +
                        call_text("hsv", {lisp_text(color.parts[1]), lisp_text(color.parts[2]),
                                          lisp_text(color.parts[3])}) +
@@ -416,7 +413,7 @@ std::string Writer::program(const std::vector<TopForm> &forms) {
 
 // `(def r 20)`, `(define (f x) …)`, `(let [r 2] …)`, or a shape.
 void Writer::lisp_statement(const Node &form) {
-    const std::string head = head_of(form);
+    const std::string head = lisp_head(form);
     const std::size_t count = form.parts.size();
     if (head.starts_with("set-") || head == "use" || head == "use-modules") return;
     if ((head == "def" || head == "define" || head == "defn") && count >= 3) {
@@ -424,25 +421,19 @@ void Writer::lisp_statement(const Node &form) {
         if (scheme && form.parts[1].parts.empty()) throw Unsure{}; // `(define () …)`
         const Node *named = scheme ? &form.parts[1].parts[0] : &form.parts[1];
         if (named->is != Is::Name || count != (head == "defn" ? 4u : 3u)) throw Unsure{};
-        std::string name = named->text;
-        std::ranges::replace(name, '-', '_');
         const bool function = scheme || head == "defn";
         if (!function) {
             const Written w = lisp(form.parts[2]);
-            const std::string ours = declare(name, w.kind);
-            scopes_.back().names[named->text] = scopes_.back().names[name];
+            const std::string ours = lisp_declare(*named, w.kind);
             return line("let " + ours + " = " + w.text);
         }
-        const std::string ours = declare(name, Kind::Function);
-        scopes_.back().names[named->text] = scopes_.back().names[name];
+        const std::string ours = lisp_declare(*named, Kind::Function);
         const std::vector<Node> &list = form.parts[scheme ? 1 : 2].parts;
         scopes_.emplace_back();
         std::string parameters_of;
-        for (std::size_t i = scheme ? 1 : 0; i < list.size(); ++i) {
-            if (list[i].is != Is::Name) throw Unsure{};
+        for (std::size_t i = scheme ? 1 : 0; i < list.size(); ++i)
             parameters_of +=
-                (parameters_of.empty() ? "" : ", ") + declare(list[i].text, Kind::Unknown);
-        }
+                (parameters_of.empty() ? "" : ", ") + lisp_declare(list[i], Kind::Unknown);
         const std::string body = lisp_text(form.parts.back());
         scopes_.pop_back();
         return line("fn " + ours + "(" + parameters_of + ") = " + body);
@@ -460,7 +451,7 @@ void Writer::lisp_statement(const Node &form) {
         return lisp_statement(form.parts[2]);
     }
     const Written w = lisp(form);
-    if (w.kind == Kind::Number || w.kind == Kind::Vector) throw Unsure{};
+    if (w.kind == Kind::Number || w.kind == Kind::Vector || w.kind == Kind::List) throw Unsure{};
     shown_ = true;
     line(w.text);
 }

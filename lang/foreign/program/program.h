@@ -92,6 +92,7 @@ struct TopForm {
 std::vector<TopForm> read_lisp(std::string_view text);
 
 Node node(Is is, std::string text, std::vector<Node> parts = {});
+std::string lisp_head(const Node &form);
 inline bool is_named(const Node &n, std::string_view name) {
     return n.is == Is::Name && n.text == name;
 }
@@ -152,6 +153,15 @@ class Writer {
     std::string lisp_text(const Node &n, int needs = 0);
     std::string doubled(const Node &n);
     Written lisp_own(const Node &n);
+    // Lists (lisp_lists.cpp).
+    std::string lisp_declare(const Node &theirs, Kind kind);
+    std::string lisp_range(const Node &n);
+    Written lisp_for(const Node &name, const Node &list, const Node &body);
+    Written lisp_list(const Node &n);
+    Written lisp_apply(const Node &n);
+    void lisp_spread(const Node &list, std::vector<Written> &into);
+    static std::optional<Written> lisp_of_lists(const std::string &op, std::vector<Written> &parts,
+                                                const std::string &k);
     std::optional<Written> lisp_number(const std::string &head, const Node &n);
     std::optional<Written> lisp_joined(const std::string &head, const Node &n);
     Written lisp_field(const Node &n, bool flat);

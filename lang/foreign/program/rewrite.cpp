@@ -64,8 +64,11 @@ std::optional<Told> told_by_words(const std::vector<Piece> &pieces) {
     constexpr std::array<std::string_view, 12> curv_shapes = {
         "cube",  "sphere", "box",        "cylinder", "torus",        "cone",
         "union", "circle", "difference", "rect",     "intersection", "regular_polygon"};
+    constexpr std::array<std::string_view, 8> jscad_shapes = {
+        "cuboid",        "roundedCuboid",    "roundedCylinder", "geodesicSphere",
+        "extrudeLinear", "cylinderElliptic", "extrudeRotate",   "ellipsoid"};
     int script = 0, ours = 0;
-    bool strong = false, let = false;
+    bool strong = false, let = false, jscad = false;
     std::optional<Told> curv;
     std::size_t first = pieces.size();
     for (std::size_t i = 0; i + 1 < pieces.size(); ++i) {
@@ -88,6 +91,8 @@ std::optional<Told> told_by_words(const std::vector<Piece> &pieces) {
             script += declares ? 2 : 1;
             first = std::min(first, i);
         }
+        jscad = jscad || (next.text == "(" && is_word_at(pieces, i + 2, "{") &&
+                          std::ranges::find(jscad_shapes, p.text) != jscad_shapes.end());
         if (p.text == "fn" || p.text == "param") ++ours;
         const bool starts = i == 0 || p.first || is_word_at(pieces, i - 1, "[") ||
                             is_word_at(pieces, i - 1, "=") || is_word_at(pieces, i - 1, ",") ||
@@ -108,7 +113,7 @@ std::optional<Told> told_by_words(const std::vector<Piece> &pieces) {
     if (!strong) curv.reset();
     if (ours > 0) return std::nullopt;
     if (script >= 3 && first < pieces.size()) // texts alone tell nothing
-        return Told{Of::Script, pieces[first].begin,
+        return Told{jscad ? Of::Jscad : Of::Script, pieces[first].begin,
                     pieces[first].begin + static_cast<std::uint32_t>(pieces[first].text.size())};
     return curv;
 }
