@@ -255,11 +255,22 @@ static bool may_be_lost(const Interpreter &ev, const std::string &name, const st
     });
 }
 
+// Whether what a call is given first, as `([0, 0, 0], …)`, is a vector of three parts.
+static bool is_given_vec3(const Interpreter &ev, Span name) {
+    constexpr std::uint32_t looked_at = 200;
+    const std::string_view behind =
+        std::string_view(ev.sources[name.source].text).substr(name.end, looked_at);
+    if (behind.starts_with("(vec3(")) return true;
+    const std::string_view first = behind.substr(0, behind.find(']'));
+    return first.starts_with("([") && std::ranges::count(first, ',') == 2;
+}
+
 void report_unknown_name(Interpreter &ev, std::uint32_t frame, std::string_view written, Span place,
                          const Wanted &wanted) {
     const std::string name(written);
     if (std::ranges::any_of(name, [](char c) { return (c & 0x80) != 0; })) return; // letters, told
     std::string near = likely_name(ev, frame, name, wanted);
+    if (near == "segment" && is_given_vec3(ev, place)) near = "capsule"; // it is flat
     if (name.size() == 1 && place.source && !is_whole_argument(ev, place)) near.clear();
     if (lacking(ev, name, near)) return; // one cause, one report
     const bool of_user = ev.quiet == 0 && !is_library_place(ev, place);

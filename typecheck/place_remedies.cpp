@@ -169,6 +169,9 @@ bool help_with_place(Interpreter &ev, Diagnostic &d, std::string_view name,
                    fmt::format("{}, {}", radii, placed.given), placed.moved);
     }
     if (args.size() != formals.size() + 1) return false;
+    const auto is_point = [&](const Formal &f) { return f.vector_size == dimensions; };
+    if (std::ranges::count_if(formals, is_point) > 1)
+        return false; // `capsule(a, b, r)` has a place
     if (const std::string axis = source(args.size() - 1);
         dimensions == 3 && stands_along_y(name, axis)) {
         const std::string given = source_text(ev, join(args[0].span, args[args.size() - 2].span));

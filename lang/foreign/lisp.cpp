@@ -1,5 +1,6 @@
 // Answers to calls with their names in the parentheses, as libfive and Bauble have them:
 // `(sphere 100)`, `(box 1 | move x 2)`, `(def r 20)`, `(let [r 2] (sphere r))`.
+#include "base/text.h"
 #include "lang/foreign/foreign.h"
 
 #include <array>
@@ -15,6 +16,13 @@ static std::string bare(const std::string &value) {
         if (depth == 0 && i + 1 < value.size()) return value;
     }
     return value.starts_with('(') ? value.substr(1, value.size() - 2) : value;
+}
+
+static std::string doubled(const std::string &value) {
+    const auto number = parse_number(value);
+    if (number) return format_shortest(*number * 2);
+    return "2 * " +
+           (value.find_first_of(" ") == value.npos || value[0] == '[' ? value : "(" + value + ")");
 }
 
 // One value as it is written here, and past it; empty where it is none.
@@ -76,7 +84,8 @@ std::string ForeignSyntax::lisp_part(Index at, Index end) const {
         const std::string value = lisp_value(at);
         return at == end ? value : std::string();
     }
-    std::string arguments;
+    std::string arguments, before; // `before`: without the last
+    int values = 0;
     for (Index i = at + 1; i < end;) {
         if (kind(i) == Tok::Colon && kind(i + 1) == Tok::Name && touch(i, i + 1)) { // `:r 10`
             const std::string key(text(i + 1));
@@ -105,11 +114,18 @@ std::string ForeignSyntax::lisp_part(Index at, Index end) const {
             if (by.empty()) return {};
             value += ": " + bare(by);
         } else if (names_axis) {
+            if (!axis.empty()) return {}; // `(mirror s x z)`
             axis = std::string("axis: ") + static_cast<char>(value[0] - 'x' + 'X');
             continue;
         }
-        arguments += (arguments.empty() ? "" : ", ") + bare(value);
+        before = arguments + (arguments.empty() ? "" : ", ");
+        arguments = before + bare(value);
+        ++values;
     }
+    // Bauble gives halves: of a box, and of the height of a cylinder along an axis.
+    if (((name == "box" || name == "rect") && values == 1) ||
+        (name == "cylinder" && values == 2 && !axis.empty()))
+        arguments = before + doubled(arguments.substr(before.size()));
     if (!axis.empty()) arguments += (arguments.empty() ? "" : ", ") + axis;
     if (!named.empty()) arguments += named.substr(arguments.empty() ? 2 : 0);
     return (moves ? "translate" : name) + "(" + arguments + ")";
@@ -274,6 +290,8 @@ bool ForeignSyntax::lisp_call(Index at) {
     const Tok before = open == 0 ? Tok::End : kind(open - 1); // Curv's `f 1 (g 2)` keeps them
     if (is_one_of(before, {Tok::Number, Tok::Close, Tok::ListClose})) call = "(" + call + ")";
     Diagnostic &d = foreign(span(open, open + 1), "a call's name stands before its parentheses");
+    if (call.find("box(") != call.npos)
+        d.note("boxes are given there by half their size, or by two corners");
     if (!call.empty() && call != "()")
         d.help(to_write(call), {{span(open, match(open)), call}});
     else if (open + 1 == inner)

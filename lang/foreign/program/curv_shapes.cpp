@@ -8,8 +8,6 @@ namespace fathom::lang::program {
 
 namespace {
 
-Written solid_of_curv(std::string text) { return {std::move(text), as_call, Kind::Solid}; }
-
 const Node *part_of(const Node &record, std::string_view name) {
     if (record.is != Is::Record) return nullptr;
     for (std::size_t i = 0; i < record.parts.size(); ++i)
@@ -76,21 +74,20 @@ std::optional<Written> Writer::curv_shape(const std::string &name, const Node &a
         return value(*n);
     };
     const auto half = [](const Written &w) { return halved(w.text); };
-    if (name == "sphere") return solid_of_curv("sphere(" + half(value(a)) + ")");
-    if (name == "cube") return solid_of_curv("box(" + text(a) + ")");
-    if (name == "box") return solid_of_curv("box(" + text(a) + ")");
-    if (name == "ellipsoid") return solid_of_curv("ellipsoid(" + half(value(a)) + ")");
+    if (name == "sphere") return solid_of("sphere(" + half(value(a)) + ")");
+    if (name == "cube") return solid_of("box(" + text(a) + ")");
+    if (name == "box") return solid_of("box(" + text(a) + ")");
+    if (name == "ellipsoid") return solid_of("ellipsoid(" + half(value(a)) + ")");
     if (name == "cylinder")
-        return solid_of_curv("cylinder(" + half(part("d")) + ", " + part("h").text +
-                             ").orient(Y, Z)");
+        return solid_of("cylinder(" + half(part("d")) + ", " + part("h").text + ").orient(Y, Z)");
     if (name == "cone")
-        return solid_of_curv("cone(" + half(part("d")) + ", " + part("h").text + ").orient(Y, Z)");
+        return solid_of("cone(" + half(part("d")) + ", " + part("h").text + ").orient(Y, Z)");
     if (name == "torus")
-        return solid_of_curv("torus(" + half(part("major")) + ", " + half(part("minor")) +
-                             ").orient(Y, Z)");
+        return solid_of("torus(" + half(part("major")) + ", " + half(part("minor")) +
+                        ").orient(Y, Z)");
     if (name == "half_space")
-        return solid_of_curv("plane(" + part("normal").text + ", " +
-                             (part_of(a, "d") ? part("d").text : "0") + ")");
+        return solid_of("plane(" + part("normal").text + ", " +
+                        (part_of(a, "d") ? part("d").text : "0") + ")");
     if (name == "circle") return Written{"circle(" + half(value(a)) + ")", as_call, Kind::Flat};
     if (name == "rect" || name == "square")
         return Written{"rectangle(" + text(a) + ")", as_call, Kind::Flat};
@@ -143,7 +140,7 @@ Written Writer::curv_field(const Node &record) {
         within = call_text("aabb", {corner(box->parts[0]), corner(box->parts[1])});
     }
     if (flat) return {"implicit2(p => " + field + ", within: " + within + ")", as_call, Kind::Flat};
-    return solid_of_curv("implicit(p => " + field + ", within: " + within + ")");
+    return solid_of("implicit(p => " + field + ", within: " + within + ")");
 }
 
 // `s >> f x`: what `f` with the argument, or without one, does to the shape.

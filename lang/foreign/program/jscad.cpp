@@ -7,9 +7,6 @@ namespace fathom::lang::program {
 
 namespace {
 
-Written solid_of_script(std::string text) { return {std::move(text), as_call, Kind::Solid}; }
-Written flat_of_script(std::string text) { return {std::move(text), as_call, Kind::Flat}; }
-
 std::string part_or(Given &g, const std::string &name, const std::string &otherwise) {
     const auto w = taken(g, std::size_t(-1), name);
     return w ? w->text : otherwise;
@@ -34,7 +31,7 @@ std::optional<Written> Writer::jscad_solid(const std::string &name, Given &g) {
     const auto placed = [&](std::string text, bool flat = false) {
         if (!center.empty() && center != "[0, 0, 0]" && center != "[0, 0]" && center != "true")
             text += ".translate(" + center + ")";
-        return flat ? flat_of_script(text) : solid_of_script(text);
+        return flat ? flat_of(text) : solid_of(text);
     };
     if (name == "cuboid" || name == "cube") return placed("box(" + part_or(g, "size", "2") + ")");
     if (name == "sphere" || name == "geodesicSphere")
@@ -187,7 +184,7 @@ std::optional<Written> Writer::script_shape(const std::string &name, Given &g) {
                                            {"smoothUnion", "smooth_union", 3, 9, false}}};
     if ((name == "sdf" || name == "implicit") && g.by_place.size() == 1 &&
         g.by_place[0].kind == Kind::Function)
-        return solid_of_script("implicit(" + taken(g, 0, "")->text + ", within: everywhere)");
+        return solid_of("implicit(" + taken(g, 0, "")->text + ", within: everywhere)");
     if ((name == "render" || name == "show" || name == "draw") && g.by_place.size() == 1)
         return taken(g, 0, "");
     for (const Row &row : rows) {
@@ -198,7 +195,7 @@ std::optional<Written> Writer::script_shape(const std::string &name, Given &g) {
         for (std::size_t i = 0; i < g.by_place.size(); ++i)
             arguments.push_back(taken(g, i, "")->text);
         const std::string text = call_text(row.ours, arguments);
-        return row.flat ? flat_of_script(text) : solid_of_script(text);
+        return row.flat ? flat_of(text) : solid_of(text);
     }
     return std::nullopt;
 }

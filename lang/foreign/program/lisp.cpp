@@ -109,8 +109,12 @@ class LispReader {
         constexpr std::array<std::string_view, 4> vectors{"list", "vec", "vec2", "vec3"};
         if (out.text == "(" && out.parts.size() > 1 && out.parts[0].is == Is::Name &&
             std::ranges::find(vectors, out.parts[0].text) != vectors.end()) {
+            const std::size_t size = out.parts[0].text == "vec3"   ? 3
+                                     : out.parts[0].text == "vec2" ? 2
+                                                                   : 1;
             out.parts.erase(out.parts.begin());
             out.text = "[";
+            if (out.parts.size() == 1) out.parts.resize(size, Node(out.parts[0])); // `(vec3 0.5)`
         }
         return out;
     }
@@ -125,7 +129,8 @@ class LispReader {
             throw Unsure{};
         const std::size_t slash = word.find('/', 1);
         if (slash != std::string_view::npos && slash + 1 < word.size() &&
-            !word.starts_with("shape/")) // `tau/4`; Bauble's `shape/2d` is one name
+            !word.starts_with("shape/") &&
+            !word.starts_with("gl/")) // `tau/4`; `shape/2d` is a name
             return node(Is::Binary, "/",
                         {plain(word.substr(0, slash)), plain(word.substr(slash + 1))});
         return plain(word);

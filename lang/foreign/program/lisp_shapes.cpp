@@ -10,8 +10,6 @@ namespace fathom::lang::program {
 
 namespace {
 
-Written solid_of_lisp(std::string text) { return {std::move(text), as_call, Kind::Solid}; }
-
 bool is_vector(const Node &n) { return n.is == Is::List && n.text == "["; }
 
 // `x`, `-y`; empty where it is no axis.
@@ -48,6 +46,11 @@ Writer::Form Writer::form_of(const Node &n) const {
         const Node &part = n.parts[i];
         if (part.is == Is::Name && part.text.starts_with(":")) {
             if (i + 1 == n.parts.size()) throw Unsure{};
+            if (const std::string axis = axis_text(node(Is::Name, part.text.substr(1)));
+                !axis.empty()) { // `:y 0.5`
+                f.axes.push_back({axis, f.rest.size()});
+                continue;
+            }
             f.named[part.text.substr(1)] = &n.parts[++i];
         } else if (const std::string axis = axis_text(part);
                    !axis.empty() && (!find(part.text) || (was_value && i + 1 < n.parts.size()))) {
@@ -80,7 +83,14 @@ Written Writer::lisp(const Node &n) {
     if (n.is == Is::Name) {
         if (const Written *w = find(n.text)) return *w;
         if (n.text == "t") return {"time", as_call, Kind::Number};
+        if (n.text == "true" || n.text == "false") return {n.text, as_call, Kind::Number};
         if (n.text == "tau" || n.text == "pi") return {n.text, as_call, Kind::Number};
+        if (n.text == "ground") return solid_of("plane(Y)");
+        const std::size_t dot = n.text.find('.'); // `p.x`
+        const Written *of = dot == std::string::npos ? nullptr : find(n.text.substr(0, dot));
+        if (of && of->kind == Kind::Vector && dot + 2 == n.text.size() &&
+            std::string_view("xyz").find(n.text.back()) < 3)
+            return {of->text + n.text.substr(dot), as_call, Kind::Number};
         throw Unsure{};
     }
     if (n.is == Is::Unary || n.is == Is::Number) return value(n);
@@ -106,6 +116,13 @@ Written Writer::lisp(const Node &n) {
     if (n.parts.size() == 3 && n.parts[1].is == Is::Name && n.parts[1].text.size() == 1 &&
         std::string_view("/*+").find(n.parts[1].text) < 3)
         return lisp(node(Is::List, "(", {n.parts[1], n.parts[0], n.parts[2]}));
+    if (head == "view" && n.parts.size() == 2) return lisp(n.parts[1]);
+    if (head == "if" && n.parts.size() == 4) {
+        const std::string given = lisp_text(n.parts[1]), then = lisp_text(n.parts[2]);
+        const Written otherwise = lisp(n.parts[3]);
+        return {"if " + given + " { " + then + " } else { " + otherwise.text + " }", 0,
+                otherwise.kind};
+    }
     if (const auto made = lisp_number(head, n)) return *made;
     const Form f = form_of(n);
     if (const auto made = lisp_joined(head, n)) return *made;
@@ -134,9 +151,14 @@ std::optional<Written> Writer::lisp_number(const std::string &head, const Node &
                 (i > 1 ? " " + head + " " : "") + lisp_text(n.parts[i], i > 1 ? binds + 1 : binds);
         return Written{out, binds, Kind::Number};
     }
-    constexpr std::array<std::string_view, 16> same = {
-        "sin", "cos", "tan", "abs",  "sqrt",  "min",  "max",   "mod",
-        "exp", "log", "pow", "atan", "floor", "ceil", "round", "length"};
+    constexpr std::array<std::string_view, 23> same = {
+        "sin",   "cos",  "tan",   "abs",    "sqrt", "min",   "max",       "mod",
+        "exp",   "log",  "pow",   "atan",   "asin", "acos",  "floor",     "ceil",
+        "round", "sign", "fract", "length", "mix",  "clamp", "smoothstep"};
+    const bool compares = head == "<" || head == ">" || head == "<=" || head == ">=";
+    if (compares && n.parts.size() == 3)
+        return Written{lisp_text(n.parts[1], 7) + " " + head + " " + lisp_text(n.parts[2], 7), 6,
+                       Kind::Number};
     if (head == "sin+" || head == "cos+") // Bauble's, from 0 to 1
         return Written{"0.5 + 0.5 * " + call_text(head.substr(0, 3), {lisp_text(n.parts[1])}), 8,
                        Kind::Number};
@@ -147,6 +169,8 @@ std::optional<Written> Writer::lisp_number(const std::string &head, const Node &
     if (head == "expt" && n.parts.size() == 3)
         return Written{lisp_text(n.parts[1], as_call) + " ^ " + lisp_text(n.parts[2], as_call), 11,
                        Kind::Number};
+    if (head == "perlin" && n.parts.size() == 2)
+        return Written{call_text("noise", {lisp_text(n.parts[1])}), as_call, Kind::Number};
     if (std::ranges::find(same, head) == same.end()) return std::nullopt;
     std::vector<std::string> arguments;
     for (std::size_t i = 1; i < n.parts.size(); ++i) arguments.push_back(lisp_text(n.parts[i]));
@@ -167,7 +191,7 @@ Written Writer::lisp_field(const Node &n, bool flat) {
     const std::string arguments = "(p => " + lisp_text(n.parts.back()) + ", within: everywhere)";
     scopes_.pop_back();
     if (flat) return {"implicit2" + arguments, as_call, Kind::Flat};
-    return solid_of_lisp("implicit" + arguments);
+    return solid_of("implicit" + arguments);
 }
 
 std::optional<Written> Writer::lisp_joined(const std::string &head, const Node &n) {
@@ -216,189 +240,64 @@ std::optional<Written> Writer::lisp_solid(const std::string &name, const Form &f
     const std::size_t count = f.rest.size();
     if (count == 0 && name != "half-space") return std::nullopt;
     if ((name == "sphere" || name == "ball") && count <= 2)
-        return solid_of_lisp(put("sphere(" + at(0) + ")", 1));
+        return solid_of(put("sphere(" + at(0) + ")", 1));
     if ((name == "box" || name == "box-exact" || name == "box-mitered") && count == 2 &&
         is_vector(*f.rest[0]) && is_vector(*f.rest[1]))
-        return solid_of_lisp(between_corners("box", lisp(*f.rest[0]), lisp(*f.rest[1])));
+        return solid_of(between_corners("box", lisp(*f.rest[0]), lisp(*f.rest[1])));
     if ((name == "box" || name == "rounded-box") && count == 1) {
         const std::string size = doubled(*f.rest[0]);
         if (round != f.named.end())
-            return solid_of_lisp("rounded_box(" + size + ", radius: " + lisp_text(*round->second) +
-                                 ")");
-        return solid_of_lisp("box(" + size + ")");
+            return solid_of("rounded_box(" + size + ", radius: " + lisp_text(*round->second) + ")");
+        return solid_of("box(" + size + ")");
     }
     if (name == "cylinder" && count == 2 && !axis.empty()) {
         const std::string r = at(0), h = doubled(*f.rest[1]);
         if (round != f.named.end())
-            return solid_of_lisp(along("rounded_cylinder(" + r + ", " + h +
-                                           ", rounding: " + lisp_text(*round->second) + ")",
-                                       axis));
-        return solid_of_lisp(along("cylinder(" + r + ", " + h + ")", axis));
+            return solid_of(along("rounded_cylinder(" + r + ", " + h +
+                                      ", rounding: " + lisp_text(*round->second) + ")",
+                                  axis));
+        return solid_of(along("cylinder(" + r + ", " + h + ")", axis));
     }
     if (name == "cone" && count == 2 && axis.size() == 1) // Bauble: up from its foot
-        return solid_of_lisp("cone(" + at(0) + ", " + at(1) + ").translate(y: " + halved(at(1)) +
-                             ")" + (axis == "Y" ? "" : ".orient(Y, " + axis + ")"));
+        return solid_of("cone(" + at(0) + ", " + at(1) + ").translate(y: " + halved(at(1)) + ")" +
+                        (axis == "Y" ? "" : ".orient(Y, " + axis + ")"));
     if ((name == "cylinder" || name == "cylinder-z" || name == "cone-z") && axis.empty() &&
         count >= 2 && count <= 3) { // libfive: from its foot up z
         const std::string h = at(1);
-        return solid_of_lisp(put(std::string(name == "cone-z" ? "cone(" : "cylinder(") + at(0) +
-                                     ", " + h + ").orient(Y, Z).translate(z: " + halved(h) + ")",
-                                 2));
+        return solid_of(put(std::string(name == "cone-z" ? "cone(" : "cylinder(") + at(0) + ", " +
+                                h + ").orient(Y, Z).translate(z: " + halved(h) + ")",
+                            2));
     }
     if (name == "torus" && count == 2 && !axis.empty())
-        return solid_of_lisp(along("torus(" + at(0) + ", " + at(1) + ")", axis));
+        return solid_of(along("torus(" + at(0) + ", " + at(1) + ")", axis));
     if (name == "torus-z" && count >= 2)
-        return solid_of_lisp(put("torus(" + at(0) + ", " + at(1) + ").orient(Y, Z)", 2));
+        return solid_of(put("torus(" + at(0) + ", " + at(1) + ").orient(Y, Z)", 2));
     if (name == "half-space" && !axis.empty() && count <= 1) // what lies on the axis' side
-        return solid_of_lisp("plane(" + negated(axis) +
-                             (count == 1 ? ", " + negated(at(0)) : std::string()) + ")");
-    if (name == "ellipsoid" && count == 1) return solid_of_lisp("ellipsoid(" + at(0) + ")");
-    if (name == "octahedron" && count == 1) return solid_of_lisp("octahedron(" + at(0) + ")");
+        return solid_of("plane(" + negated(axis) +
+                        (count == 1 ? ", " + negated(at(0)) : std::string()) + ")");
+    if (name == "ellipsoid" && count == 1) return solid_of("ellipsoid(" + at(0) + ")");
+    if (name == "octahedron" && count == 1) return solid_of("octahedron(" + at(0) + ")");
+    if (name == "line" && count == 3 && is_vector(*f.rest[0]) && is_vector(*f.rest[1])) {
+        const std::size_t parts = f.rest[0]->parts.size();
+        if (parts != f.rest[1]->parts.size()) throw Unsure{};
+        if (parts == 3) return solid_of("capsule(" + at(0) + ", " + at(1) + ", " + at(2) + ")");
+        return Written{"segment(" + at(0) + ", " + at(1) + ", " + doubled(*f.rest[2]) + ")",
+                       as_call, Kind::Flat};
+    }
+    if (name == "rect" && count == 1) {
+        const std::string size = doubled(*f.rest[0]);
+        return Written{round == f.named.end()
+                           ? "rectangle(" + size + ")"
+                           : "rounded_rectangle(" + size + ", " + lisp_text(*round->second) + ")",
+                       as_call, Kind::Flat};
+    }
+    if (name == "polygon" && count == 1 && is_vector(*f.rest[0]))
+        return Written{"polygon(" + at(0) + ")", as_call, Kind::Flat};
     if (name == "circle" && count <= 2)
         return Written{put("circle(" + at(0) + ")", 1), as_call, Kind::Flat};
     if (name == "rectangle" && count == 2)
         return Written{between_corners(name, lisp(*f.rest[0]), lisp(*f.rest[1])), as_call,
                        Kind::Flat};
-    return std::nullopt;
-}
-
-// `(extrude z 20 s)`, in either order, `(extrude-z s 0 1)`, `(revolve y s)`, `(revolve-y s)`.
-std::optional<Written> Writer::lisp_profile(const std::string &name, const Form &f) {
-    const auto of = [&](const Node &flat) {
-        Written w = lisp_head(flat) == "lambda-shape" ? lisp_field(flat, true) : lisp(flat);
-        if (w.kind != Kind::Flat && w.kind != Kind::Unknown) throw Unsure{};
-        return wrapped(w, as_call) + ".";
-    };
-    const std::size_t count = f.rest.size();
-    const std::string axis = f.axes.size() == 1 ? f.axes[0].first : "";
-    if (!f.named.empty()) return std::nullopt;
-    if (name == "extrude" && axis == "Z" && count == 2) {
-        const Written first = lisp(*f.rest[0]);
-        const Written half = first.kind == Kind::Number ? first : lisp(*f.rest[1]);
-        return solid_of_lisp(of(*f.rest[first.kind == Kind::Number ? 1 : 0]) + "extrude(2 * " +
-                             wrapped(half, 10) + ")");
-    }
-    if (name == "extrude-z" && axis.empty() && count == 3)
-        return solid_of_lisp(of(*f.rest[0]) + "extrude(" + lisp_text(*f.rest[2]) + " - " +
-                             lisp_text(*f.rest[1], 9) + ").translate(z: (" + lisp_text(*f.rest[1]) +
-                             " + " + lisp_text(*f.rest[2]) + ") / 2)");
-    if (count == 1 && ((name == "revolve" && axis == "Y") || (name == "revolve-y" && axis.empty())))
-        return solid_of_lisp(of(*f.rest[0]) + "revolve()");
-    return std::nullopt;
-}
-
-// `(rotate s y 0.5)`, `(move s x 10 y 5)`, `(move-x s 10)`.
-std::optional<Written> Writer::lisp_change(const std::string &name, const Node &n, const Form &f) {
-    if (f.rest.empty()) return std::nullopt;
-    if (name == "morph" && f.rest.size() == 3) {
-        std::vector<Written> shapes;
-        std::string by;
-        for (const Node *part : f.rest) {
-            Written w = lisp(*part);
-            if (w.kind == Kind::Number && by.empty())
-                by = w.text;
-            else
-                shapes.push_back(std::move(w));
-        }
-        if (shapes.size() != 2) throw Unsure{};
-        return Written{call_text("blend", {shapes[1].text, shapes[0].text, by}), as_call,
-                       Kind::Solid};
-    }
-    const Node &color_part = n.parts.back();
-    const bool by_name = name == "color" && n.parts.size() == 3 && color_part.is == Is::Name &&
-                         !find(color_part.text);
-    if (by_name && (color_part.text == "normal+" || color_part.text == "normal")) {
-        const Written painted = lisp(n.parts[1]);
-        return Written{wrapped(painted, as_call) + (color_part.text == "normal"
-                                                        ? ".paint((p, n) => n)"
-                                                        : ".paint((p, n) => 0.5 + 0.5 * n)"),
-                       as_call, painted.kind};
-    }
-    if (by_name) { // `color red`
-        const Written painted = lisp(n.parts[1]);
-        return Written{wrapped(painted, as_call) + ".paint(" + color_part.text + ")", as_call,
-                       painted.kind};
-    }
-    const Written of = lisp(*f.rest[0]);
-    if (of.kind == Kind::Number && f.rest.back() == &n.parts.back() &&
-        lisp(n.parts.back()).kind != Kind::Number) { // `(move x 10 s)`
-        Node same = n;
-        std::rotate(same.parts.begin() + 1, same.parts.end() - 1, same.parts.end());
-        return lisp_change(name, same, form_of(same));
-    }
-    const std::string head = wrapped(of, as_call) + ".";
-    const auto changed = [&](const std::string &text) {
-        return Written{head + text, as_call, of.kind};
-    };
-    const auto limit = f.named.find("limit");
-    for (const auto &[key, given_value] : f.named)
-        if (key != "limit" || name != "tile") return std::nullopt;
-    const std::size_t count = f.rest.size();
-    const auto at = [&](std::size_t i) {
-        if (i >= f.rest.size()) throw Unsure{};
-        return lisp_text(*f.rest[i]);
-    };
-    const bool by_axis = name.size() > 2 && name[name.size() - 2] == '-';
-    if (by_axis && f.axes.empty() && count == 2) { // libfive's `rotate-x`
-        Node same = n;
-        same.parts[0].text = name.substr(0, name.size() - 2);
-        same.parts.insert(same.parts.end() - 1, node(Is::Name, name.substr(name.size() - 1)));
-        return lisp_change(same.parts[0].text, same, form_of(same));
-    }
-    if (by_axis && count == 1) {
-        const std::string axis(1, static_cast<char>(name.back() - 32));
-        const std::string base = name.substr(0, name.size() - 2);
-        if (base == "symmetric" || base == "mirror") return changed("mirror(" + axis + ")");
-        if (base == "reflect") return changed("reflect(" + axis + ")");
-        return std::nullopt;
-    }
-    if (name == "move" || name == "rotate" || name == "scale") {
-        if (f.axes.empty()) {
-            if (count != 2 || name == "rotate") return std::nullopt;
-            return changed((name == "move" ? "translate(" : "scale(") + at(1) + ")");
-        }
-        if (count != f.axes.size() + 1) return std::nullopt;
-        std::string all;
-        for (std::size_t i = 0; i < f.axes.size(); ++i) {
-            if (f.axes[i].second != i + 1 || f.axes[i].first.size() != 1) return std::nullopt;
-            const char axis = f.axes[i].first[0];
-            if (name == "move")
-                all += (all.empty() ? "translate(" : ", ") +
-                       std::string(1, static_cast<char>(axis + 32)) + ": " + at(i + 1);
-            else if (name == "rotate")
-                all += (all.empty() ? "rotate(" : ".rotate(") + at(i + 1) + ", axis: " + axis + ")";
-            else
-                return std::nullopt;
-        }
-        return changed(all + (name == "move" ? ")" : ""));
-    }
-    if (name == "mirror" && f.axes.size() == 1 && count == 1)
-        return changed("mirror(" + f.axes[0].first + ")");
-    if ((name == "shell" || name == "offset" || name == "expand") && count == 2)
-        return changed((name == "shell" ? "shell(" : "offset(") + at(1) + ")");
-    if (name == "twist" && count == 2 && f.axes.size() == 1)
-        return changed("twist(" + at(1) + ", axis: " + f.axes[0].first + ")");
-    if (name == "radial" && count == 2 && f.axes.size() == 1)
-        return changed("repeat_polar(" + at(1) + ", axis: " + f.axes[0].first + ")");
-    if (name == "tile" && count == 2)
-        return changed("repeat(" + at(1) +
-                       (limit == f.named.end() ? "" : ", count: " + lisp_text(*limit->second)) +
-                       ")");
-    if (name == "slow" && count == 2) {
-        lost_.insert("`slow`, as bounds are derived here");
-        return of;
-    }
-    if (name != "color" || n.parts.size() != 3) return std::nullopt;
-    const Node &color = n.parts[2];
-    if (is_vector(color) && color.parts.size() == 3) {
-        const std::string parts = at(1);
-        return changed("paint(rgb(" + parts.substr(1, parts.size() - 2) + "))");
-    }
-    if (lisp_head(color) == "hsv" && color.parts.size() == 4)
-        return changed("paint(" +
-                       call_text("hsv", {lisp_text(color.parts[1]), lisp_text(color.parts[2]),
-                                         lisp_text(color.parts[3])}) +
-                       ")");
     return std::nullopt;
 }
 
@@ -413,8 +312,10 @@ std::string Writer::program(const std::vector<TopForm> &forms) {
 
 // `(def r 20)`, `(define (f x) …)`, `(let [r 2] …)`, or a shape.
 void Writer::lisp_statement(const Node &form) {
-    const std::string head = lisp_head(form);
+    std::string head = lisp_head(form);
+    if (head.starts_with("gl/")) head = head.substr(3); // `(gl/def r 20)`
     const std::size_t count = form.parts.size();
+    if (head == "set") return lisp_setting(form);
     if (head.starts_with("set-") || head == "use" || head == "use-modules") return;
     if ((head == "def" || head == "define" || head == "defn") && count >= 3) {
         const bool scheme = form.parts[1].is == Is::List;

@@ -109,6 +109,8 @@ struct Written {
 };
 
 constexpr int as_call = 12;
+inline Written solid_of(std::string text) { return {std::move(text), as_call, Kind::Solid}; }
+inline Written flat_of(std::string text) { return {std::move(text), as_call, Kind::Flat}; }
 
 // What a call is given, by place and by name; what was not asked for is not understood.
 struct Given {
@@ -167,6 +169,11 @@ class Writer {
     Written lisp_field(const Node &n, bool flat);
     std::optional<Written> lisp_profile(const std::string &name, const Form &f);
     std::optional<Written> lisp_solid(const std::string &name, const Form &f);
+    // What is done to shapes (lisp_changes.cpp).
+    std::string lisp_of_point(const Node &n);
+    std::string lisp_color(const Node &n);
+    Written lisp_painted(const Node &n);
+    void lisp_setting(const Node &form);
     std::optional<Written> lisp_change(const std::string &name, const Node &n, const Form &f);
 
     // Statements (write.cpp).

@@ -24,8 +24,6 @@ std::string or_else(Given &g, std::size_t place, const std::string &name, const 
     const auto w = taken(g, place, name);
     return w ? w->text : otherwise;
 }
-Written solid(std::string text) { return {std::move(text), as_call, Kind::Solid}; }
-Written flat(std::string text) { return {std::move(text), as_call, Kind::Flat}; }
 
 std::string moved(std::string shape, Given &g, std::size_t place) {
     const auto center = taken(g, place, "center");
@@ -64,28 +62,28 @@ std::optional<Written> slab_of(Given &g) {
 
 std::optional<Written> Writer::sdf_shape(const std::string &name, Given &g) {
     if (name == "sphere")
-        return solid(moved(call_text(name, {or_else(g, 0, "radius", "1")}), g, 1));
+        return solid_of(moved(call_text(name, {or_else(g, 0, "radius", "1")}), g, 1));
     if (name == "box") {
         const auto a = taken(g, 2, "a"), b = taken(g, 3, "b");
-        if (a && b) return solid(between_corners(name, *a, *b));
-        return solid(moved(call_text(name, {or_else(g, 0, "size", "1")}), g, 1));
+        if (a && b) return solid_of(between_corners(name, *a, *b));
+        return solid_of(moved(call_text(name, {or_else(g, 0, "size", "1")}), g, 1));
     }
     if (name == "rounded_box")
-        return solid(call_text(name, {need(g, 0, "size"), "radius: " + need(g, 1, "radius")}));
+        return solid_of(call_text(name, {need(g, 0, "size"), "radius: " + need(g, 1, "radius")}));
     if (name == "wireframe_box") {
         const auto size = taken(g, 0, "size"), bar = taken(g, 1, "thickness");
         if (!size || !bar) return std::nullopt;
-        return solid("box_frame(" + wrapped(*size, 8) + " + " + wrapped(*bar, 9) +
-                     ", thickness: " + bar->text + ")");
+        return solid_of("box_frame(" + wrapped(*size, 8) + " + " + wrapped(*bar, 9) +
+                        ", thickness: " + bar->text + ")");
     }
     if (name == "torus")
-        return solid(call_text(name, {need(g, 0, "r1"), need(g, 1, "r2")}) + ".orient(Y, Z)");
+        return solid_of(call_text(name, {need(g, 0, "r1"), need(g, 1, "r2")}) + ".orient(Y, Z)");
     if (name == "capsule")
-        return solid(call_text(name, {need(g, 0, "a"), need(g, 1, "b"), need(g, 2, "radius")}));
+        return solid_of(call_text(name, {need(g, 0, "a"), need(g, 1, "b"), need(g, 2, "radius")}));
     if (name == "cylinder") {
         const auto r = taken(g, 0, "radius");
         if (!r) return std::nullopt;
-        return solid("implicit(p => length(p.xy) - " + wrapped(*r, 9) + ", within: everywhere)");
+        return solid_of("implicit(p => length(p.xy) - " + wrapped(*r, 9) + ", within: everywhere)");
     }
     if (name == "capped_cylinder" || name == "capped_cone") {
         const std::string a = need(g, 0, "a"), b = need(g, 1, "b");
@@ -94,48 +92,49 @@ std::optional<Written> Writer::sdf_shape(const std::string &name, Given &g) {
             need(g, 2, cone ? "ra" : "radius") + (cone ? ", " + need(g, 3, "rb") : std::string());
         const std::string plain =
             between(a, b, (cone ? "capped_cone(" : "cylinder(") + radii + ", ", ")");
-        if (!plain.empty()) return solid(plain);
+        if (!plain.empty()) return solid_of(plain);
         helpers_.insert(cone ? "fn cone_between(a: vec3, b: vec3, ra, rb) =\n"
                                "  capped_cone(ra, rb, length(b - a)).orient(Y, b - a)"
                                ".translate((a + b) / 2)\n"
                              : "fn cylinder_between(a: vec3, b: vec3, radius) =\n"
                                "  cylinder(radius, length(b - a)).orient(Y, b - a)"
                                ".translate((a + b) / 2)\n");
-        return solid(call_text(cone ? "cone_between" : "cylinder_between", {a, b, radii}));
+        return solid_of(call_text(cone ? "cone_between" : "cylinder_between", {a, b, radii}));
     }
     if (name == "rounded_cylinder")
-        return solid(call_text(name, {need(g, 0, "ra"), need(g, 2, "h"), need(g, 1, "rb")}) +
-                     ".orient(Y, Z)");
+        return solid_of(call_text(name, {need(g, 0, "ra"), need(g, 2, "h"), need(g, 1, "rb")}) +
+                        ".orient(Y, Z)");
     if (name == "rounded_cone") {
         const std::string h = need(g, 2, "h");
-        return solid(call_text("round_cone", {need(g, 0, "r1"), need(g, 1, "r2"), h}) +
-                     ".orient(Y, Z).translate(z: " + halved(h) + ")");
+        return solid_of(call_text("round_cone", {need(g, 0, "r1"), need(g, 1, "r2"), h}) +
+                        ".orient(Y, Z).translate(z: " + halved(h) + ")");
     }
-    if (name == "ellipsoid") return solid(call_text(name, {need(g, 0, "size")}));
-    if (name == "octahedron") return solid(call_text(name, {need(g, 0, "r")}));
+    if (name == "ellipsoid") return solid_of(call_text(name, {need(g, 0, "size")}));
+    if (name == "octahedron") return solid_of(call_text(name, {need(g, 0, "r")}));
     if (name == "pyramid") {
         const std::string h = need(g, 0, "h");
-        return solid("pyramid([1, " + h + ", 1]).orient(Y, Z).translate(z: " + halved(h) + ")");
+        return solid_of("pyramid([1, " + h + ", 1]).orient(Y, Z).translate(z: " + halved(h) + ")");
     }
     if (name == "plane") { // what lies on the normal's side is solid
         const std::string n = or_else(g, 0, "normal", "Z");
         const auto at = taken(g, 1, "point");
         const bool moves = at && at->text != "[0, 0, 0]";
-        return solid(call_text("plane", {negated(n)}) +
-                     (moves ? ".translate(" + at->text + ")" : ""));
+        return solid_of(call_text("plane", {negated(n)}) +
+                        (moves ? ".translate(" + at->text + ")" : ""));
     }
     if (name == "slab") return slab_of(g);
     return std::nullopt;
 }
 
 std::optional<Written> Writer::sdf_flat(const std::string &name, Given &g) {
-    if (name == "circle") return flat(moved(call_text(name, {or_else(g, 0, "radius", "1")}), g, 1));
+    if (name == "circle")
+        return flat_of(moved(call_text(name, {or_else(g, 0, "radius", "1")}), g, 1));
     if (name == "rectangle")
-        return flat(moved(call_text(name, {or_else(g, 0, "size", "1")}), g, 1));
+        return flat_of(moved(call_text(name, {or_else(g, 0, "size", "1")}), g, 1));
     if (name == "rounded_rectangle")
-        return flat(call_text(name, {need(g, 0, "size"), need(g, 1, "radius")}));
-    if (name == "hexagon") return flat(call_text("regular_polygon", {"6", need(g, 0, "r")}));
-    if (name == "polygon") return flat(call_text(name, {need(g, 0, "points")}));
+        return flat_of(call_text(name, {need(g, 0, "size"), need(g, 1, "radius")}));
+    if (name == "hexagon") return flat_of(call_text("regular_polygon", {"6", need(g, 0, "r")}));
+    if (name == "polygon") return flat_of(call_text(name, {need(g, 0, "points")}));
     return std::nullopt;
 }
 

@@ -37,7 +37,7 @@ TEST_CASE("names in the parentheses, and lines that need not be, are answered wi
         {"(sphere 100 | a)", "foreign-syntax", ""},
         {"(union (sphere 1) (box [1 -2 3]))", "foreign-syntax", "sphere(1) | box([2, -4, 6])"},
         {"(box 1 | move x 2 | rotate y (* 2 a))", "foreign-syntax",
-         "box(1).translate(x: 2).rotate(2 * a, axis: Y)"},
+         "box(2).translate(x: 2).rotate(2 * a, axis: Y)"},
         {"(union (sphere 1) (box-exact 2))", "foreign-syntax", ""},
         {"(define (f x) (+ x (- 1)))", "foreign-syntax", "fn f(x) = x + -1"},
         {"(def r 20)", "foreign-syntax", "let r = 20"},
