@@ -24,6 +24,12 @@ struct Form {
     long genus = 0;
     bool operator==(const Form &) const = default;
 };
+// What was proved of the shape in the leaves of one of an octree's tasks, and measured on the way.
+struct ShapeOfTask {
+    std::int32_t task = none;
+    Enclosure area, volume;
+    double whole = 0; // the leaves' own volume
+};
 // Whether a mesh has the pieces and handles of the solid.
 struct ShapeAnswer {
     bool proved = false;
@@ -35,6 +41,7 @@ struct ShapeAnswer {
     std::size_t unseen = 0;  // … and those that were not looked at,
     bool dear = false;       // … as too much work
     std::vector<Cell> cells; // of these leaves those that smaller ones may tell of
+    std::vector<ShapeOfTask> proved_tasks;
     // Samples see walls, gaps or edges that cells are too large for: it may have others.
     bool doubted = false;
     std::optional<Form> finer;   // … or cells of half the side show others

@@ -56,22 +56,20 @@ std::optional<Real3> unit_of(const Real3 &way) {
     return Real3{way[0] / length, way[1] / length, way[2] / length};
 }
 
-std::optional<Real3> way_across(const std::vector<Facet> &facets,
-                                const std::vector<std::uint32_t> &touched) {
+std::optional<Real3> way_along(std::span<const Real3> directions) {
     constexpr int most_turns = 32;
     constexpr double enough = 0.7; // a cosine
     Real3 sum{};
-    for (const std::uint32_t t : touched) sum = along(sum, facets[t].normal, 1);
+    for (const Real3 &one : directions) sum = along(sum, one, 1);
     std::optional<Real3> way = unit_of(sum), best = way;
     double most = -unbounded;
     for (int turn = 0; way && turn < most_turns && most < enough; ++turn) {
         double least = unbounded;
-        std::uint32_t worst = 0;
-        for (const std::uint32_t t : touched)
-            if (const double passed = inner(facets[t].normal, *way); passed < least)
-                least = passed, worst = t;
+        const Real3 *worst = nullptr;
+        for (const Real3 &one : directions)
+            if (const double share = inner(one, *way); share < least) least = share, worst = &one;
         if (least > most) most = least, best = way;
-        way = unit_of(along(*way, facets[worst].normal, 1.0 / (2 + turn)));
+        if (worst) way = unit_of(along(*way, *worst, 1.0 / (2 + turn)));
     }
     return best;
 }

@@ -275,9 +275,10 @@ bool gain_may_be_late(const Certificate &certificate, const std::vector<Cell> &d
            (!certificate.unproved.empty() && std::ranges::any_of(divided, large));
 }
 
-// Divides cells, and makes the mesh and its certificate again. Whether that was done.
+// Divides cells, and makes the mesh and its certificate again, with its shape where that is wanted and
+// the distances hold. Whether that was done.
 bool divide_again(const Field &field, const Settings &settings, std::vector<Cell> divided,
-                  std::size_t most, Mended &mended, Progress &progress) {
+                  std::size_t most, bool with_shape, Mended &mended, Progress &progress) {
     OctreeSettings octree;
     octree.threads = threads_of(settings);
     Made next; // what there is stays, should this one come to nothing
@@ -294,6 +295,8 @@ bool divide_again(const Field &field, const Settings &settings, std::vector<Cell
     const Earlier earlier{mended.certificate, changed};
     progress.phase(here + 0.5 * (1 - here));
     Certificate certificate = certify(field, settings, next, &earlier, progress);
+    if (with_shape && certificate.near())
+        prove_shape(field, settings, next, progress, certificate, &earlier);
     mended.certificate = std::move(certificate);
     mended.made = std::move(next);
     ++mended.rounds;
@@ -310,10 +313,9 @@ void divide_for_shape(const Field &field, const Settings &settings, std::size_t 
         std::erase_if(cells, [&](const Cell &cell) { return cell.level >= lattice.depth; });
         if (cells.empty() || mended.certificate.shape.open > few_open_leaves) return;
         Mended next = mended;
-        if (!divide_again(field, settings, std::move(cells), most, next, progress) ||
+        if (!divide_again(field, settings, std::move(cells), most, true, next, progress) ||
             !next.certificate.near())
             return;
-        prove_shape(field, settings, next.made, progress, next.certificate);
         mended = std::move(next);
     }
 }
@@ -427,7 +429,7 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
         const bool may_wait = !choice.hopeless && gain_may_be_late(mended.certificate, divided,
                                                                    mended.made.octree.lattice);
         const Certificate last = mended.certificate;
-        if (!divide_again(field, settings, divided, most, mended, progress)) break;
+        if (!divide_again(field, settings, divided, most, false, mended, progress)) break;
         const bool gained =
             gains(last, mended.certificate, mended.made.octree.lattice, choice.hopeless);
         if (!gained && !may_wait) break;

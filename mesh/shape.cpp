@@ -9,15 +9,16 @@
 namespace fathom::mesh {
 namespace {
 
-constexpr int halvings_of_leaf = 2; // of a leaf
+constexpr int halvings_of_leaf = 3; // of a leaf
 constexpr int most_joined = 2;      // levels above the drawing level that are looked at first
 constexpr std::size_t tasks_at_once = 8;
 constexpr int most_failed = 8;         // boxes above leaves; more of that size are not looked at
 constexpr std::size_t hopeless = 16;   // leaves of a task of which no slopes are known, or
 constexpr std::size_t too_many = 64;   // … in which it is open: no more looks
-constexpr double work_a_leaf = 60;     // kernels, that may be taken in any case
+constexpr double work_a_leaf = 100;    // kernels, that may be taken in any case
 constexpr double least_of_task = 5000; // kernels
 constexpr double most_shares = 8;      // of the work by leaves, that a task may take
+constexpr double looks_of_gradients = 0.5; // at a box, that gradients at some places count for
 constexpr double least_at_edges = 1000;
 constexpr double share_at_edges = 2; // of those taken, for the area across edges
 
@@ -84,19 +85,41 @@ struct ShapeProver {
     // Steady; not known: then parts of the box are not known either.
     enum class Answer { Yes, No, Unknown };
 
+    // The gradients at some places of a box, each of length 1.
+    void see_gradients(const cpu::ShortTape &tape, const Block &wide,
+                       std::vector<Real3> &directions) {
+        Points places;
+        places.add(middle_point(wide.lo, wide.hi));
+        for (const int c : {0, 3, 5, 6}) { // each two are across a face
+            Point corner = wide.lo;
+            for (std::size_t i = 0; i < 3; ++i)
+                if (c >> i & 1) corner[i] = wide.hi[i];
+            places.add(corner);
+        }
+        std::array<std::vector<float>, 4> found;
+        gradients_at(splitter.evaluator, tape, places, found);
+        for (std::size_t k = 0; k < places.size(); ++k)
+            if (const auto way = unit_of({found[1][k], found[2][k], found[3][k]}))
+                directions.push_back(*way);
+        spend(looks_of_gradients * tape.cost);
+    }
+
+    void spend(double cost) { kernels -= cost, taken += cost; }
+
     // Whether there is a way along which the field rises all over a box, and all triangles that touch
     // it are passed outward.
     Answer is_steady(const cpu::ShortTape &tape, const Block &wide,
                      const std::vector<std::uint32_t> &touched) {
-        kernels -= tape.cost, taken += tape.cost;
         Evaluator &evaluator = splitter.evaluator;
+        std::vector<Real3> directions; // of the triangles, outward
+        for (const std::uint32_t t : touched) directions.push_back(facets[t].normal);
         const auto passes = [&](const Real3 &way) {
-            return std::ranges::all_of(touched, [&](std::uint32_t t) {
-                return inner(facets[t].normal, way) > by_rounding;
-            });
+            return std::ranges::all_of(
+                directions, [&](const Real3 &one) { return inner(one, way) > by_rounding; });
         };
-        const std::optional<Real3> across = way_across(facets, touched);
+        const std::optional<Real3> across = way_along(directions);
         if (!touched.empty() && !(across && passes(*across))) return Answer::No;
+        spend(tape.cost);
         const std::optional<Rising> rising = rising_over(evaluator, tape, splitter.boxes, wide.lo,
                                                          wide.hi, across.value_or(Real3{}));
         if (!rising) {
@@ -113,8 +136,7 @@ struct ShapeProver {
             unit_of({linear.slope[0], linear.slope[1], linear.slope[2]});
         std::optional<Real3> both;
         if (mean && across) both = unit_of(along(*mean, *across, 1));
-        const auto ways = {mean, both};
-        for (const std::optional<Real3> &way : ways) {
+        for (const std::optional<Real3> &way : {mean, both}) {
             if (!way || !passes(*way)) continue;
             double rise = 0, size = 0;
             for (std::size_t i = 0; i < 3; ++i) {
@@ -123,15 +145,15 @@ struct ShapeProver {
             }
             if (rise > by_rounding * size) return is_so(*way, rise);
         }
-        for (const std::optional<Real3> &way : ways) {
-            if (!way || !passes(*way)) continue;
-            kernels -= tape.cost, taken += tape.cost;
-            const std::optional<double> rise =
-                least_slope_along(evaluator, tape, splitter.boxes, wide.lo, wide.hi,
-                                  {(*way)[0], (*way)[1], (*way)[2]});
-            if (rise && *rise > by_rounding) return is_so(*way, *rise);
-        }
-        return Answer::No;
+        // Where gradients that are seen go against each other there is no such way.
+        see_gradients(tape, wide, directions);
+        const std::optional<Real3> seen = way_along(directions);
+        if (!seen || !passes(*seen)) return Answer::No;
+        spend(tape.cost);
+        const std::optional<double> rise =
+            least_slope_along(evaluator, tape, splitter.boxes, wide.lo, wide.hi,
+                              {(*seen)[0], (*seen)[1], (*seen)[2]});
+        return rise && *rise > by_rounding ? is_so(*seen, *rise) : Answer::No;
     }
 
     // After a box was found to be steady: takes in what parts of it measure.
@@ -316,6 +338,25 @@ struct ShapeTask {
     }
 };
 
+std::int32_t task_of(const Octree &octree, const std::vector<Cell> &leaves) {
+    return octree.nodes[static_cast<std::size_t>(leaves[0].node)].task;
+}
+
+// Takes what was proved of a task before, if no triangle has changed near to it: boxes of its leaves are
+// four cells long, and what is not around a divided cell is eight from there.
+bool take_from(const Earlier *earlier, const ShapeTask &task, ShapeFound &found) {
+    if (!earlier) return false;
+    const auto &proved = earlier->certificate.shape.proved_tasks;
+    const auto before =
+        std::ranges::find(proved, task_of(task.octree, task.leaves), &ShapeOfTask::task);
+    if (before == proved.end()) return false;
+    for (const Cell &leaf : task.leaves)
+        if (earlier->changed.around(real(point_of(task.lattice, leaf.at)))) return false;
+    found.looked = true;
+    found.sums = {before->area, before->volume, before->whole, 0};
+    return true;
+}
+
 // The leaves that surface or mesh may go through, as a certificate knows, by their task.
 std::vector<std::vector<Cell>> leaves_by_task(const Made &made, const Certificate &certificate) {
     std::vector<std::int32_t> drawn, free;
@@ -338,7 +379,7 @@ std::vector<std::vector<Cell>> leaves_by_task(const Made &made, const Certificat
 } // namespace
 
 void prove_shape(const Field &field, const Settings &settings, const Made &made, Progress &progress,
-                 Certificate &certificate, double work) {
+                 Certificate &certificate, const Earlier *earlier, double work) {
     certificate.shape = ShapeAnswer{};
     if (made.simplified > 0 || made.widened != 0) return;
     const Lattice &lattice = made.octree.lattice;
@@ -350,12 +391,17 @@ void prove_shape(const Field &field, const Settings &settings, const Made &made,
         grid.add(facet.lo, facet.hi, static_cast<std::uint32_t>(facets.size() - 1));
     }
     grid.sort();
+    std::vector<ShapeFound> found(tasks.size());
+    std::vector<std::size_t> asked; // tasks of which nothing is known from before
     std::size_t leaves = 0;
-    for (const std::vector<Cell> &task : tasks) leaves += task.size();
+    for (std::size_t k = 0; k < tasks.size(); ++k) {
+        if (take_from(earlier, {made.octree, lattice, grid, tasks[k]}, found[k])) continue;
+        asked.push_back(k);
+        leaves += tasks[k].size();
+    }
     work = std::max(work, work_a_leaf * static_cast<double>(leaves));
     // Some tasks from everywhere at once: where they leave too much open the others say nothing more.
-    std::vector<ShapeFound> found(tasks.size());
-    const std::size_t rounds = (tasks.size() + tasks_at_once - 1) / tasks_at_once;
+    const std::size_t rounds = (asked.size() + tasks_at_once - 1) / tasks_at_once;
     const double from = progress.from, to = progress.to;
     std::size_t open = 0;
     double left = work; // what tasks leave over others may take
@@ -363,8 +409,8 @@ void prove_shape(const Field &field, const Settings &settings, const Made &made,
     bool vain = false;
     std::vector<double> taken(tasks.size());
     for (std::size_t round = 0; round < rounds; ++round) {
-        const auto count = (tasks.size() - round + rounds - 1) / rounds;
-        const auto number_of = [&](std::size_t k) { return round + k * rounds; };
+        const auto count = (asked.size() - round + rounds - 1) / rounds;
+        const auto number_of = [&](std::size_t k) { return asked[round + k * rounds]; };
         // What the rest would take, as far as those that were looked at tell.
         const double rest = looked > 0 ? (work - left) * (double(leaves) / looked - 1) : 0;
         vain = vain || (rest > left && left < work);
@@ -400,8 +446,12 @@ void prove_shape(const Field &field, const Settings &settings, const Made &made,
     ShapeAnswer &shape = certificate.shape;
     ShapeSums sums;
     int told = 0; // how much the place that is named tells: of one that was looked at, and of why
-    for (const ShapeFound &of : found) {
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        const ShapeFound &of = found[k];
         sums.add(of.sums);
+        if (of.looked && of.open == 0)
+            shape.proved_tasks.push_back(
+                {task_of(made.octree, tasks[k]), of.sums.area, of.sums.volume, of.sums.whole});
         shape.open += of.open, shape.unknown += of.unknown, shape.unseen += of.unseen;
         shape.dear = shape.dear || of.dear;
         shape.cells.insert(shape.cells.end(), of.cells.begin(), of.cells.end());

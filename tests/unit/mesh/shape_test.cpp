@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 using namespace fathom;
 
 namespace {
@@ -272,4 +274,36 @@ TEST_CASE("a mesh that joins what is apart is not proved to have the solid's sha
     CHECK_FALSE(certificate.shape.cells.empty());
     const mesh::Mended mended = make_certified_mesh(scene, settings);
     CHECK((mended.certificate.components == 2 || !mended.certificate.certified()));
+}
+
+// Across the edge of a wall that a ball cuts off the gradients all but go against each other, and are
+// not equally long: the way between them is found by looking at them.
+TEST_CASE("pieces and handles of a bent wall with sharp edges are proved") {
+    const ir::Scene scene =
+        shape_scene("implicit(p => abs(dot(sin(p / 0.35), cos(p.zxy / 0.35))) * 0.35 - 0.05, "
+                    "within: ball(0.8)) & sphere(0.7)");
+    mesh::Settings settings;
+    settings.resolution = 48;
+    const mesh::Mended mended = make_certified_mesh(scene, settings);
+    CHECK(mended.certificate.certified());
+    CHECK(mended.certificate.shape.proved);
+    CHECK(mended.certificate.components == 1);
+    CHECK(mended.certificate.genus == 0);
+}
+
+TEST_CASE("what is proved of a shape before some cells are divided is what is proved after that") {
+    const ir::Scene scene = shape_scene("sphere(1) | sphere(1).translate(x: 2.003)");
+    mesh::Settings settings;
+    settings.resolution = 40;
+    const mesh::Mended mended = make_certified_mesh(scene, settings);
+    REQUIRE(mended.rounds > 0);
+    REQUIRE(mended.certificate.shape.proved);
+    mesh::Certificate again = mended.certificate;
+    mesh::Progress progress;
+    prove_shape(mesh::Field(scene, 0, {}), settings, mended.made, progress, again);
+    CHECK(again.shape.proved);
+    CHECK(again.shape.proved_tasks.size() == mended.certificate.shape.proved_tasks.size());
+    const auto near = [](double x, double y) { return std::fabs(x - y) <= 0.01 * std::fabs(y); };
+    CHECK(near(again.shape.area.hi, mended.certificate.shape.area.hi));
+    CHECK(near(again.shape.volume.lo, mended.certificate.shape.volume.lo));
 }
