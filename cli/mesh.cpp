@@ -39,6 +39,15 @@ Json json_of(const v1::Mesh &mesh) {
           : v1::numbers_of(mesh);
     Json json;
     json["status"] = !c ? "unproved" : c->certified ? "certified" : "partial";
+    const bool near = c && mesh.undecided_cells == 0 && c->unproved_places == 0;
+    if (c) { // what the status speaks of stands beside it
+        json["proved"] = Json::array();
+        if (near) json["proved"].push_back("distances");
+        if (c->shape_proved) json["proved"].push_back("shape");
+        if (std::isfinite(c->largest_area)) json["proved"].push_back("area");
+        json["components"] = c->shape_proved ? Json(of.components) : Json();
+        json["genus"] = c->shape_proved ? Json(of.genus) : Json();
+    }
     json["triangles"] = mesh.triangles.size();
     json["vertices"] = mesh.vertices.size();
     json["watertight"] = true;
@@ -46,14 +55,7 @@ Json json_of(const v1::Mesh &mesh) {
     json["mesh_components"] = of.components;
     json["mesh_genus"] = of.genus;
     if (c) {
-        const bool near = mesh.undecided_cells == 0 && c->unproved_places == 0;
         const auto everywhere = [&](double d) { return near ? Json(d) : Json(); };
-        json["proved"] = Json::array();
-        if (near) json["proved"].push_back("distances");
-        if (c->shape_proved) json["proved"].push_back("shape");
-        if (std::isfinite(c->largest_area)) json["proved"].push_back("area");
-        json["components"] = c->shape_proved ? Json(of.components) : Json();
-        json["genus"] = c->shape_proved ? Json(of.genus) : Json();
         if (!c->shape_proved)
             json["shape_open"] = {{"cells", c->shape_open},
                                   {"near", c->shape_open > 0 ? Json(c->shape_place) : Json()},
@@ -113,7 +115,8 @@ void say_certificate(const v1::Mesh &mesh, const std::string &what, Terminal &te
                     "proved: {}; the mesh is in {}",
                     c.shape_why, handles);
     if (c.certified)
-        terminal.say(fmt::format("{}: certified: {}; {}; {}", what, near,
+        terminal.say(fmt::format("{}: certified{}: {}; {}; {}", what,
+                                 c.shape_proved ? "" : ", but for pieces and handles", near,
                                  c.shape_proved ? "the solid's surface is in " + handles : open,
                                  volume));
     else if (c.shape_doubted)
