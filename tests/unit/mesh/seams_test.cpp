@@ -182,9 +182,9 @@ TEST_CASE("past a tool that ends a hair beyond a face nothing is in doubt") {
                              "capped_cone(6, 40, 40) - capped_cone(4.4, 38.4, 40.02)",
                              "(box(20) - cylinder(5, 20.01)).rotate(0.4, axis: [2, 1, 0])"}) {
         INFO(text);
-        const mesh::Made plain = mesh::make_mesh(flush_scene(text), fine_cells(40));
+        const mesh::Made plain = mesh::make_mesh(flush_scene(text), fine_cells(32));
         CHECK(plain.octree.undecided.empty());
-        const mesh::Mended made = mesh::make_certified_mesh(flush_scene(text), fine_cells(40));
+        const mesh::Mended made = mesh::make_certified_mesh(flush_scene(text), fine_cells(32));
         CHECK(made.certificate.certified());
         CHECK(made.certificate.components == 1);
         CHECK(made.certificate.divisions < 10'000);
