@@ -90,7 +90,7 @@ struct ShapeProver {
                        std::vector<Real3> &directions) {
         Points places;
         places.add(middle_point(wide.lo, wide.hi));
-        for (const int c : {0, 3, 5, 6}) { // each two are across a face
+        for (int c = 0; c < 8; ++c) {
             Point corner = wide.lo;
             for (std::size_t i = 0; i < 3; ++i)
                 if (c >> i & 1) corner[i] = wide.hi[i];
