@@ -84,6 +84,7 @@ struct Step {
     void absolute();
     void angle();
     Interval length_of_both() const;
+    double of_two(double x_length, const Row &x, double y_length, const Row &y) const;
     void smoothstep();
     template <auto function, auto slope> void of_one() { unary(function, slope); }
 

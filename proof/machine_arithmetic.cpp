@@ -34,6 +34,18 @@ Interval hyperbolic_slope_at(double x) {
 }
 } // namespace
 
+// |x + y|^2 = |x|^2 + |y|^2 + 2 x.y, for gradients of these lengths at most that lie in these rows.
+double Step::of_two(double x_length, const Row &x, double y_length, const Row &y) const {
+    const double any = up(x_length + y_length);
+    if (any == 0 || any == infinity) return any;
+    const Interval dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+    if (!(dot.hi < 0.9 * x_length * y_length))
+        return any; // what is hardly less is not worth a root
+    const double squares = x_length * x_length + y_length * y_length;
+    const double most = up(std::sqrt(std::max(up(squares + 2 * dot.hi, 4), 0.0)), 4);
+    return std::min(any, most * machine.ranges_.rules[Rule::TwoGradients]);
+}
+
 void Step::negate() {
     for (int c = 0; c < n; ++c) set(c, -value(0, c), scaled(-1.0, grad(0, c)), odd(0, c));
     finish(norm(0), false);
@@ -54,7 +66,8 @@ void Step::add() {
     finish(norm(0) == 0                        ? norm(1)
            : norm(1) == 0                      ? norm(0)
            : machine.at_right_angles(in, 0, 1) ? up(std::hypot(norm(0), norm(1)), 4)
-                                               : up(norm(0) + norm(1)),
+           : n == 1 ? of_two(norm(0), grad(0, 0), norm(1), scaled(sign, grad(1, 0)))
+                    : up(norm(0) + norm(1)),
            odd_used);
     if (machine.norm_[out] != infinity)
         machine.cause_[out] =
@@ -62,15 +75,17 @@ void Step::add() {
 }
 
 void Step::product() {
-    double a = 0, b = 0;
+    double a = 0, b = 0, most = infinity;
     const bool none_times = has_pole(0) || has_pole(1);
     for (int c = 0; c < n; ++c) {
         Interval x = value(0, c), y = value(1, c);
         a = std::max(a, x.magnitude()), b = std::max(b, y.magnitude());
-        set(c, x * y, sum(scaled(y, grad(0, c)), scaled(x, grad(1, c))), odd(0, c) || odd(1, c));
+        const Row of_x = scaled(y, grad(0, c)), of_y = scaled(x, grad(1, c));
+        set(c, x * y, sum(of_x, of_y), odd(0, c) || odd(1, c));
+        if (n == 1) most = of_two(times(b, norm(0)), of_x, times(a, norm(1)), of_y);
     }
     if (none_times) return fail(Trouble::Singular); // 0 times what is no number is none
-    finish(up(times(b, norm(0)) + times(a, norm(1))), false);
+    finish(std::min(most, up(times(b, norm(0)) + times(a, norm(1)))), false);
     if (machine.norm_[out] != infinity)
         machine.cause_[out] =
             machine.cause_[in.args[0]] ? machine.cause_[in.args[0]] : machine.cause_[in.args[1]];

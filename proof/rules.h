@@ -40,23 +40,24 @@ enum class Rule : std::size_t {
     FarMean,
     FarLength,
     FarChoice,
-    Linear,     // of expressions: a vector that is M v + c (2, 2.7, 2.13, 2.47)
-    Raised,     // powers of what is Lipschitz, and a number (2.31, 2.40)
-    Relative,   // what grows as itself (2.16)
-    Turning,    // vectors that turn as they move (2.21)
-    Mean,       // what moves along with two numbers (2.18)
-    AroundAxis, // what vanishes on an axis about which it turns (2.19)
-    BesideTurn, // … beside what is the same all around
-    Between,    // numbers interpolated on a lattice (2.20)
-    Along,      // vectors along themselves (2.25)
-    Univariate, // polynomials of one number (2.27)
-    AxisAngle,  // angles to an axis (2.35)
-    Triangle,   // triangle waves (2)
-    Majorant,   // what is divided by a scale that is carried along (2.45)
-    Ellipsoid,  // ellipsoids to first order (2.46)
-    Ways,       // bounds by ways (2.6)
-    Composed,   // fields of what is moved, turned or folded (2.28)
-    Rays,       // fields that grow along each ray alike (2.48)
+    Linear,       // of expressions: a vector that is M v + c (2, 2.7, 2.13, 2.47)
+    Raised,       // powers of what is Lipschitz, and a number (2.31, 2.40)
+    Relative,     // what grows as itself (2.16)
+    Turning,      // vectors that turn as they move (2.21)
+    Mean,         // what moves along with two numbers (2.18)
+    AroundAxis,   // what vanishes on an axis about which it turns (2.19)
+    BesideTurn,   // … beside what is the same all around
+    Between,      // numbers interpolated on a lattice (2.20)
+    Along,        // vectors along themselves (2.25)
+    Univariate,   // polynomials of one number (2.27)
+    AxisAngle,    // angles to an axis (2.35)
+    Triangle,     // triangle waves (2)
+    Majorant,     // what is divided by a scale that is carried along (2.45)
+    Ellipsoid,    // ellipsoids to first order (2.46)
+    Ways,         // bounds by ways (2.6)
+    Composed,     // fields of what is moved, turned or folded (2.28)
+    Rays,         // fields that grow along each ray alike (2.48)
+    TwoGradients, // of a sum or a product, by the angle between them (2.49)
     Count
 };
 
