@@ -343,7 +343,8 @@ void Step::cross() {
 // J = (I - n n^T) J_q / |q|
 void Step::normalize() {
     Interval length = machine.box_length(in.args[0]);
-    bool singular = length.lo <= 0 && norm(0) > 0;
+    const bool is_no_number = in.divides && norm(0) == 0 && length.lo < min_single;
+    bool singular = is_no_number || (length.lo <= 0 && norm(0) > 0);
     Interval unit[4];
     for (int c = 0; c < n; ++c)
         unit[c] = length.lo > 0 ? meet(Interval(-1, 1), value(0, c) / length) : Interval(-1, 1);
@@ -357,7 +358,11 @@ void Step::normalize() {
             }
         set(c, unit[c], g);
     }
-    if (singular) return fail(Trouble::Singular);
+    if (singular) {
+        fail(Trouble::Singular);
+        if (is_no_number) machine.pole_[out] = 1;
+        return;
+    }
     finish(norm(0) == 0 ? 0 : up(norm(0) / length.lo, 4), any_odd);
 }
 

@@ -64,6 +64,7 @@ struct Instruction {
         false; // it reads a number that is not the same one twice for rounding (steadiness.h)
     bool has_majorant = false; // a quotient whose divisor is scaled as it is (majorants.h)
     bool cancels = false;      // a step whose jumps the result does not see (discontinuities.h)
+    bool divides = false;      // a Normalize that is v / length(v), which is no number at 0
     Slot out = 0;
     std::vector<Slot> args;
     std::uint32_t payload = 0; // the op's; of a Loop: index into Tape::loops

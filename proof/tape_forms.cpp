@@ -420,7 +420,7 @@ Slot Flattener::quotient(Scope &scope, NodeId id, Instruction out) {
         return emit(scope, out, Form::Hyperbolic, {a});
     if (graph[b].op == Op::Splat && graph[graph.arg(b, 0)].op == Op::Length &&
         graph.arg(graph.arg(b, 0), 0) == a) {
-        out.op = Op::Normalize;
+        out.op = Op::Normalize, out.divides = true;
         return emit(scope, out, Form::Plain, {a});
     }
     if (const auto larger = without_factors(scope, id)) return slot(scope, *larger);
