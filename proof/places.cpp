@@ -333,8 +333,12 @@ bool Prover::report_division(ShapeId id, const FieldBound &bound, const Blamed &
     d->note("at all points it is from " + number_text(range.lo) + " to " + number_text(range.hi) +
             (reads.time && reads.params ? ", by the time and by params"
              : reads.time               ? ", by the time that is covered"
-                                        : ", by a param's range"))
-        .help(keep + (reads.time ? "" : ", or begin the param's range further in"));
+                                        : ", by a param's range"));
+    const NodeId size = graph[by].op == Op::Splat ? graph.arg(by, 0) : by;
+    if (graph[size].op == Op::Length && graph.arg(size, 0) == graph.arg(blamed.node, 0))
+        d->help("a direction is `normalize(v)`, which is 0 where `v` is");
+    else
+        d->help(keep + (reads.time ? "" : ", or begin the param's range further in"));
     return true;
 }
 

@@ -83,6 +83,14 @@ class LispReader {
         while (true) {
             if (!skip()) throw Unsure{};
             const char c = text_[at_];
+            const bool function = c == '|' && at_ + 1 < text_.size() && text_[at_ + 1] == '(';
+            if (function) { // Janet's `|(f $)`
+                ++at_;
+                out.parts.push_back(node(
+                    Is::List, "(",
+                    {node(Is::Name, "fn"), node(Is::List, "[", {node(Is::Name, "$")}), form()}));
+                continue;
+            }
             if (c == close || (c == '|' && close == ')')) {
                 ++at_;
                 if (piped) { // `(a | f x)` is `(f a x)`

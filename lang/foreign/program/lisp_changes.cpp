@@ -3,6 +3,7 @@
 #include "lang/foreign/program/program.h"
 
 #include <algorithm>
+#include <array>
 
 namespace fathom::lang::program {
 
@@ -76,11 +77,14 @@ std::optional<Written> Writer::lisp_profile(const std::string &name, const Form 
     const std::size_t count = f.rest.size();
     const std::string axis = f.axes.size() == 1 ? f.axes[0].first : "";
     if (!f.named.empty()) return std::nullopt;
-    if (name == "extrude" && axis == "Z" && count == 2) {
-        const Written first = lisp(*f.rest[0]);
-        const Written half = first.kind == Kind::Number ? first : lisp(*f.rest[1]);
-        return solid_of(of(*f.rest[first.kind == Kind::Number ? 1 : 0]) + "extrude(2 * " +
-                        wrapped(half, 10) + ")");
+    if (name == "extrude" && axis.size() == 1 && count == 2) {
+        const bool half_first = lisp(*f.rest[0]).kind == Kind::Number;
+        // The flat shape's x and y are x and z there along y, and y and z along x.
+        const std::string turned = axis == "X"   ? ".rotate(120deg, axis: [1, 1, 1])"
+                                   : axis == "Y" ? ".rotate(90deg, axis: X)"
+                                                 : "";
+        return solid_of(of(*f.rest[half_first ? 1 : 0]) + "extrude(" +
+                        doubled(*f.rest[half_first ? 0 : 1]) + ")" + turned);
     }
     if (name == "extrude-z" && axis.empty() && count == 3)
         return solid_of(of(*f.rest[0]) + "extrude(" + lisp_text(*f.rest[2]) + " - " +
@@ -144,11 +148,12 @@ std::optional<Written> Writer::lisp_change(const std::string &name, const Node &
     }
     if (name == "move" || name == "rotate" || name == "scale") {
         if (f.axes.empty()) {
-            if (count != 2 || name == "rotate") return std::nullopt;
-            return changed((name == "move" ? "translate(" : "scale(") + at(1) + ")");
+            if (count != 2 || (name == "rotate" && of.kind != Kind::Flat)) return std::nullopt;
+            return changed((name == "move" ? "translate" : name) + "(" + at(1) + ")");
         }
         if (count != f.axes.size() + 1) return std::nullopt;
         std::string all;
+        std::array<std::string, 3> sizes{"1", "1", "1"};
         for (std::size_t i = 0; i < f.axes.size(); ++i) {
             if (f.axes[i].second != i + 1 || f.axes[i].first.size() != 1) return std::nullopt;
             const char axis = f.axes[i].first[0];
@@ -158,8 +163,10 @@ std::optional<Written> Writer::lisp_change(const std::string &name, const Node &
             else if (name == "rotate")
                 all += (all.empty() ? "rotate(" : ".rotate(") + at(i + 1) + ", axis: " + axis + ")";
             else
-                return std::nullopt;
+                sizes[static_cast<std::size_t>(axis - 'X')] = at(i + 1);
         }
+        if (name == "scale")
+            return changed("scale([" + sizes[0] + ", " + sizes[1] + ", " + sizes[2] + "])");
         return changed(all + (name == "move" ? ")" : ""));
     }
     if (name == "mirror" && !f.axes.empty() && count == 1) {
@@ -186,8 +193,8 @@ std::optional<Written> Writer::lisp_change(const std::string &name, const Node &
         lost_.insert("`slow`, as bounds are derived here");
         return of;
     }
-    if (name == "with-lights") {
-        lost_.insert("`with-lights`");
+    if (name == "with-lights" || name == "bound") {
+        lost_.insert("`" + name + "`" + (name == "bound" ? ", as bounds are derived here" : ""));
         return of;
     }
     return std::nullopt;

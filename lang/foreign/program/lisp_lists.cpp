@@ -9,7 +9,7 @@ namespace fathom::lang::program {
 // A name of theirs, which may hold hyphens, as one of ours.
 std::string Writer::lisp_declare(const Node &theirs, Kind kind) {
     if (theirs.is != Is::Name) throw Unsure{};
-    std::string name = theirs.text;
+    std::string name = theirs.text == "$" ? "each" : theirs.text; // of `|(f $)`
     std::ranges::replace(name, '-', '_');
     const std::string ours = declare(name, kind);
     scopes_.back().names[theirs.text] = scopes_.back().names[name];
@@ -34,9 +34,11 @@ Written Writer::lisp_for(const Node &name, const Node &list, const Node &body) {
     const std::string over = range.empty() ? lisp_list(list).text : range;
     scopes_.emplace_back();
     const std::string ours = lisp_declare(name, range.empty() ? Kind::Unknown : Kind::Number);
-    const std::string each = lisp_text(body);
+    const Written each = lisp(body);
     scopes_.pop_back();
-    return {"[for " + ours + " in " + over + " { " + each + " }]", as_call, Kind::List};
+    const bool loop = lisp_head(body) == "seq"; // one in the other
+    const std::string inside = loop ? each.text.substr(1, each.text.size() - 2) : each.text;
+    return {"[for " + ours + " in " + over + " { " + inside + " }]", as_call, Kind::List};
 }
 
 // What is a list there.
@@ -60,14 +62,20 @@ Written Writer::lisp_list(const Node &n) {
     }
     if (head == "seq") { // `[i :in list]`, `[i :range [0 5]]`
         const Node &by = n.parts[1];
-        if (by.is != Is::List || by.parts.size() != 3 || by.parts[1].is != Is::Name) throw Unsure{};
-        Node over = by.parts[2];
+        if (by.is != Is::List || by.parts.size() < 3 || by.parts.size() % 3 != 0 ||
+            by.parts[1].is != Is::Name)
+            throw Unsure{};
+        Node over = by.parts[2], body = n.parts[2];
         if (by.parts[1].text == ":range" && over.is == Is::List && over.text == "[") {
             over.text = "(";
             over.parts.insert(over.parts.begin(), node(Is::Name, "range"));
         } else if (by.parts[1].text != ":in")
             throw Unsure{};
-        return lisp_for(by.parts[0], over, n.parts[2]);
+        if (by.parts.size() > 3) { // `[x :in a, y :in b]`
+            const Node rest = node(Is::List, "[", {by.parts.begin() + 3, by.parts.end()});
+            body = node(Is::List, "(", {n.parts[0], rest, body});
+        }
+        return lisp_for(by.parts[0], over, body);
     }
     Written w = lisp(n);
     if (w.kind != Kind::List && w.kind != Kind::Vector && w.kind != Kind::Unknown) throw Unsure{};

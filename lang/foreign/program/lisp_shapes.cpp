@@ -291,8 +291,8 @@ std::optional<Written> Writer::lisp_solid(const std::string &name, const Form &f
                            : "rounded_rectangle(" + size + ", " + lisp_text(*round->second) + ")",
                        as_call, Kind::Flat};
     }
-    if (name == "polygon" && count == 1 && is_vector(*f.rest[0]))
-        return Written{"polygon(" + at(0) + ")", as_call, Kind::Flat};
+    if (name == "polygon" && count == 1)
+        return flat_of(call_text("polygon", {lisp_list(*f.rest[0]).text}));
     if (name == "circle" && count <= 2)
         return Written{put("circle(" + at(0) + ")", 1), as_call, Kind::Flat};
     if (name == "rectangle" && count == 2)
