@@ -3,6 +3,7 @@
 // and written as ours, so that one edit puts all of it right.
 #include "lang/foreign/foreign.h"
 
+#include <algorithm>
 #include <array>
 
 namespace fathom::lang {
@@ -233,9 +234,13 @@ bool ForeignSyntax::spaced_statement(Index at) {
     if (value.empty() || !apart) return false;
     failed_ = past;
     const Index shown = kind(at - 1) == Tok::Name ? at - 1 : at;
-    foreign(span(shown, at), "a call's arguments stand in parentheses, and what is done to a shape "
-                             "behind a `.`")
-        .help(to_write(value), {{span(first, past - 1), value}});
+    Diagnostic &d = foreign(span(shown, at), "a call's arguments stand in parentheses, and what is "
+                                             "done to a shape behind a `.`");
+    constexpr std::array<std::string_view, 3> round_shapes{"sphere(", "circle(", "ellipsoid("};
+    if (std::ranges::any_of(round_shapes,
+                            [&](auto shape) { return value.find(shape) != value.npos; }))
+        d.note("Curv gives a ball by its diameter; here it is given by its radius");
+    d.help(to_write(value), {{span(first, past - 1), value}});
     return true;
 }
 

@@ -20,11 +20,12 @@ std::optional<std::string> axis_of(const std::string &name) {
     return std::nullopt;
 }
 
-constexpr std::array<std::string_view, 26> changes = {
-    "move",          "translate", "rotate",     "scale",     "stretch",    "reflect",  "reflect_x",
-    "reflect_y",     "reflect_z", "colour",     "color",     "offset",     "shell",    "extrude",
-    "revolve",       "twist",     "repeat_x",   "repeat_xy", "repeat_xyz", "repeat_y", "repeat_z",
-    "repeat_radial", "lipschitz", "complement", "set_bbox",  "align"};
+constexpr std::array<std::string_view, 29> changes = {
+    "move",       "translate", "rotate",          "scale",           "stretch",        "reflect",
+    "reflect_x",  "reflect_y", "reflect_z",       "colour",          "color",          "offset",
+    "shell",      "extrude",   "revolve",         "twist",           "repeat_x",       "repeat_xy",
+    "repeat_xyz", "repeat_y",  "repeat_z",        "repeat_radial",   "lipschitz",      "complement",
+    "set_bbox",   "align",     "repeat_mirror_x", "repeat_mirror_y", "repeat_mirror_z"};
 
 } // namespace
 
@@ -151,6 +152,8 @@ Written Writer::curv_changed(const Written &of, const std::string &name, const N
     };
     if (name == "revolve") return {head + "revolve().orient(Y, Z)", as_call, Kind::Solid};
     if (name == "complement") return {call_text(name, {of.text}), as_call, of.kind};
+    if (name.starts_with("repeat_mirror_") && name.size() == 15)
+        return changed("mirror(" + std::string(1, static_cast<char>(name.back() - 32)) + ")");
     if (name.starts_with("reflect_") && name.size() == 9)
         return changed("reflect(" + std::string(1, static_cast<char>(name.back() - 32)) + ")");
     if (!a) throw Unsure{};
@@ -260,7 +263,8 @@ Written Writer::curv_call(const Node &n) {
         return {call_text(own->text, arguments), as_call, Kind::Unknown};
     }
     if (is_curv_change(callee.text)) { // without more: `complement s`, `revolve s`
-        if (callee.text == "complement" || callee.text == "revolve")
+        if (callee.text == "complement" || callee.text == "revolve" ||
+            callee.text.starts_with("repeat_mirror_"))
             return curv_changed(value(a), callee.text, nullptr);
         throw Unsure{};
     }

@@ -61,9 +61,12 @@ bool is_word_at(const std::vector<Piece> &pieces, std::size_t i, std::string_vie
 
 // Scripts have several words that are none of ours; Curv has calls by a space.
 std::optional<Told> told_by_words(const std::vector<Piece> &pieces) {
-    constexpr std::array<std::string_view, 12> curv_shapes = {
-        "cube",  "sphere", "box",        "cylinder", "torus",        "cone",
-        "union", "circle", "difference", "rect",     "intersection", "regular_polygon"};
+    constexpr std::array<std::string_view, 17> curv_shapes = {
+        "cube",       "sphere",  "box",          "cylinder",
+        "torus",      "cone",    "union",        "circle",
+        "difference", "rect",    "square",       "ellipsoid",
+        "half_space", "ellipse", "intersection", "regular_polygon",
+        "polygon"};
     constexpr std::array<std::string_view, 8> jscad_shapes = {
         "cuboid",        "roundedCuboid",    "roundedCylinder", "geodesicSphere",
         "extrudeLinear", "cylinderElliptic", "extrudeRotate",   "ellipsoid"};
@@ -102,6 +105,12 @@ std::optional<Told> told_by_words(const std::vector<Piece> &pieces) {
                             std::ranges::find(curv_shapes, p.text) != curv_shapes.end() &&
                             (next.kind == Word::Number || next.text == "[" || next.text == "{" ||
                              next.kind == Word::Name);
+        const bool exact = next.text == "." && (is_word_at(pieces, i + 2, "exact") ||
+                                                is_word_at(pieces, i + 2, "mitred"));
+        if (starts && exact && !curv) { // `cube.exact 2`
+            curv = Told{Of::Curv, p.begin, p.begin + static_cast<std::uint32_t>(p.text.size())};
+            strong = true;
+        }
         let = let || p.text == "let";
         const bool several = p.text == "union" || p.text == "difference" || p.text == "smooth";
         strong = strong || p.text == ">>" || (let && p.text == "in") || p.text == "`" ||
