@@ -127,6 +127,9 @@ struct Thing {
     bool is_group = false, is_mesh = false, is_material = false;
 };
 
+// The first answer to a program of OpenSCAD that has sines of degrees; false where there is none.
+bool answer_degrees(const Source &source, SourceId id, Diagnostics &diagnostics);
+
 class Writer {
   public:
     explicit Writer(Of of) : of_(of) {}

@@ -182,7 +182,7 @@ std::optional<Rewritten> rewrite(std::string_view text, SourceId id) {
 
 bool answer(const Source &source, SourceId id, Diagnostics &diagnostics) {
     auto rewritten = rewrite(source.text, id);
-    if (!rewritten) return false;
+    if (!rewritten) return answer_degrees(source, id, diagnostics);
     if (!source.text.ends_with('\n')) rewritten->text.pop_back();
     Diagnostic &d = diagnostics.add(Code::ForeignSyntax, rewritten->at,
                                     "this is a program of " + std::string(words_of(rewritten->of)));
