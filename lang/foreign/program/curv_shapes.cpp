@@ -40,7 +40,7 @@ Written Writer::curv_joined(const std::string &name, const Node &list, const std
     if (list.is != Is::List) {
         const Written w = value(list);
         if (name != "union" || !k.empty()) throw Unsure{};
-        return {call_text("union", {w.text}), as_call, Kind::Solid};
+        return solid_of(call_text("union", {w.text}));
     }
     if (!loops) {
         std::vector<Written> parts;
@@ -89,16 +89,14 @@ std::optional<Written> Writer::curv_shape(const std::string &name, const Node &a
     if (name == "half_space")
         return solid_of("plane(" + part("normal").text + ", " +
                         (part_of(a, "d") ? part("d").text : "0") + ")");
-    if (name == "circle") return Written{"circle(" + half(value(a)) + ")", as_call, Kind::Flat};
-    if (name == "rect" || name == "square")
-        return Written{"rectangle(" + text(a) + ")", as_call, Kind::Flat};
-    if (name == "ellipse") return Written{"ellipse(" + half(value(a)) + ")", as_call, Kind::Flat};
-    if (name == "polygon") return Written{"polygon(" + text(a) + ")", as_call, Kind::Flat};
+    if (name == "circle") return flat_of("circle(" + half(value(a)) + ")");
+    if (name == "rect" || name == "square") return flat_of("rectangle(" + text(a) + ")");
+    if (name == "ellipse") return flat_of("ellipse(" + half(value(a)) + ")");
+    if (name == "polygon") return flat_of("polygon(" + text(a) + ")");
     if (name == "regular_polygon") { // by the circle within, one side at the foot
         const std::string n = text(a, 10);
-        return Written{"regular_polygon(" + n + ", 1 / cos(pi / " + n + ")).rotate(180deg / " + n +
-                           " - 90deg)",
-                       as_call, Kind::Flat};
+        return flat_of("regular_polygon(" + n + ", 1 / cos(pi / " + n + ")).rotate(180deg / " + n +
+                       " - 90deg)");
     }
     if (name == "union" || name == "intersection" || name == "difference")
         return curv_joined(name, a, "");
@@ -140,7 +138,7 @@ Written Writer::curv_field(const Node &record) {
         };
         within = call_text("aabb", {corner(box->parts[0]), corner(box->parts[1])});
     }
-    if (flat) return {"implicit2(p => " + field + ", within: " + within + ")", as_call, Kind::Flat};
+    if (flat) return flat_of("implicit2(p => " + field + ", within: " + within + ")");
     return solid_of("implicit(p => " + field + ", within: " + within + ")");
 }
 
@@ -150,7 +148,7 @@ Written Writer::curv_changed(const Written &of, const std::string &name, const N
     const auto changed = [&](const std::string &all) {
         return Written{head + all, as_call, of.kind};
     };
-    if (name == "revolve") return {head + "revolve().orient(Y, Z)", as_call, Kind::Solid};
+    if (name == "revolve") return solid_of(head + "revolve().orient(Y, Z)");
     if (name == "complement") return {call_text(name, {of.text}), as_call, of.kind};
     if (name.starts_with("repeat_mirror_") && name.size() == 15)
         return changed("mirror(" + std::string(1, static_cast<char>(name.back() - 32)) + ")");
@@ -174,7 +172,7 @@ Written Writer::curv_changed(const Written &of, const std::string &name, const N
     if (name == "scale" || name == "stretch") return changed("scale(" + text(*a) + ")");
     if (name == "reflect") return changed("reflect(" + text(*a) + ")");
     if (name == "offset" || name == "shell") return changed(name + "(" + text(*a) + ")");
-    if (name == "extrude") return {head + "extrude(" + text(*a) + ")", as_call, Kind::Solid};
+    if (name == "extrude") return solid_of(head + "extrude(" + text(*a) + ")");
     if (name == "twist") return changed("twist(" + text(*a) + ", axis: Z)");
     if (name == "rotate") {
         const Node *angle = part_of(*a, "angle"), *axis = part_of(*a, "axis");
@@ -225,8 +223,8 @@ Written Writer::curv_call(const Node &n) {
     if (callee.is == Is::Call && callee.parts[0].is == Is::Name) { // `move v s`, `morph k [a, b]`
         const std::string &name = callee.parts[0].text;
         if (name == "morph" && a.is == Is::List && a.parts.size() == 2)
-            return {call_text("blend", {text(a.parts[1]), text(a.parts[0]), text(callee.parts[1])}),
-                    as_call, Kind::Solid};
+            return solid_of(
+                call_text("blend", {text(a.parts[1]), text(a.parts[0]), text(callee.parts[1])}));
         if (is_curv_change(name)) return curv_changed(value(a), name, &callee.parts[1]);
         throw Unsure{};
     }
@@ -291,7 +289,7 @@ std::optional<Written> Writer::curv_constant(const Node &n) {
     }
     if (n.is != Is::Name || find(n.text)) return std::nullopt;
     if (const auto axis = axis_of(n.text)) return Written{*axis, as_call, Kind::Vector};
-    if (n.text == "nothing") return Written{"empty", as_call, Kind::Solid};
+    if (n.text == "nothing") return solid_of("empty");
     if (n.text == "deg") return Written{"1deg", as_call, Kind::Number};
     if (n.text == "time") return Written{"time", as_call, Kind::Number};
     return std::nullopt;

@@ -7,15 +7,16 @@
 
 namespace fathom::lang::program {
 
-// Whether it is of the point `p`.
-static bool is_by_point(const Node &n) {
-    return (n.is == Is::Name && (n.text == "p" || n.text.starts_with("p."))) ||
-           std::ranges::any_of(n.parts, is_by_point);
+// Whether it is of the point `p`, and not of a `p` of the program's own.
+bool Writer::is_by_point(const Node &n) const {
+    const bool names = n.is == Is::Name && (n.text == "p" || n.text.starts_with("p."));
+    return (names && !find("p")) ||
+           std::ranges::any_of(n.parts, [&](const Node &part) { return is_by_point(part); });
 }
 
 std::string Writer::lisp_of_point(const Node &n) {
     scopes_.emplace_back();
-    scopes_.back().names["p"] = {"p", as_call, Kind::Vector};
+    if (!find("p")) scopes_.back().names["p"] = {"p", as_call, Kind::Vector};
     std::string text = lisp_text(n);
     scopes_.pop_back();
     return text;
@@ -96,7 +97,9 @@ std::optional<Written> Writer::lisp_profile(const std::string &name, const Form 
 }
 
 // `(rotate s y 0.5)`, `(move s x 10 y 5)`, `(move-x s 10)`.
-std::optional<Written> Writer::lisp_change(const std::string &name, const Node &n, const Form &f) {
+std::optional<Written> Writer::lisp_change(const std::string &name, const Node &n,
+                                           const Form &given) {
+    Form f = given;
     if (f.rest.empty()) return std::nullopt;
     if (name == "morph" && f.rest.size() == 3) {
         std::vector<Written> shapes;
@@ -113,13 +116,15 @@ std::optional<Written> Writer::lisp_change(const std::string &name, const Node &
                        Kind::Solid};
     }
     if (name == "color" || name == "shade" || name == "blinn-phong") return lisp_painted(n);
-    const Written of = lisp(*f.rest[0]);
-    if (of.kind == Kind::Number && f.rest.back() == &n.parts.back() &&
-        lisp(n.parts.back()).kind != Kind::Number) { // `(move x 10 s)`
-        Node same = n;
-        std::rotate(same.parts.begin() + 1, same.parts.end() - 1, same.parts.end());
-        return lisp_change(name, same, form_of(same));
-    }
+    Written of = lisp(*f.rest[0]);
+    Node turned; // `(move x 10 s)` as `(move s x 10)`
+    if (of.kind == Kind::Number && f.rest.back() == &n.parts.back())
+        if (Written last = lisp(n.parts.back()); last.kind != Kind::Number) {
+            of = std::move(last);
+            turned = n;
+            std::rotate(turned.parts.begin() + 1, turned.parts.end() - 1, turned.parts.end());
+            f = form_of(turned);
+        }
     const std::string head = wrapped(of, as_call) + ".";
     const auto changed = [&](const std::string &text) {
         return Written{head + text, as_call, of.kind};

@@ -115,7 +115,7 @@ std::optional<Written> Writer::lisp_of_lists(const std::string &op, std::vector<
     }
     for (Written &w : parts)
         if (w.kind == Kind::List)
-            w = {call_text(meets ? "intersection" : "union", {w.text}), as_call, Kind::Solid};
+            w = solid_of(call_text(meets ? "intersection" : "union", {w.text}));
     return std::nullopt;
 }
 

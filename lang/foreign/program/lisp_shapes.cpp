@@ -190,7 +190,7 @@ Written Writer::lisp_field(const Node &n, bool flat) {
     }
     const std::string arguments = "(p => " + lisp_text(n.parts.back()) + ", within: everywhere)";
     scopes_.pop_back();
-    if (flat) return {"implicit2" + arguments, as_call, Kind::Flat};
+    if (flat) return flat_of("implicit2" + arguments);
     return solid_of("implicit" + arguments);
 }
 
@@ -281,20 +281,17 @@ std::optional<Written> Writer::lisp_solid(const std::string &name, const Form &f
         const std::size_t parts = f.rest[0]->parts.size();
         if (parts != f.rest[1]->parts.size()) throw Unsure{};
         if (parts == 3) return solid_of("capsule(" + at(0) + ", " + at(1) + ", " + at(2) + ")");
-        return Written{"segment(" + at(0) + ", " + at(1) + ", " + doubled(*f.rest[2]) + ")",
-                       as_call, Kind::Flat};
+        return flat_of("segment(" + at(0) + ", " + at(1) + ", " + doubled(*f.rest[2]) + ")");
     }
     if (name == "rect" && count == 1) {
         const std::string size = doubled(*f.rest[0]);
-        return Written{round == f.named.end()
+        return flat_of(round == f.named.end()
                            ? "rectangle(" + size + ")"
-                           : "rounded_rectangle(" + size + ", " + lisp_text(*round->second) + ")",
-                       as_call, Kind::Flat};
+                           : "rounded_rectangle(" + size + ", " + lisp_text(*round->second) + ")");
     }
     if (name == "polygon" && count == 1)
         return flat_of(call_text("polygon", {lisp_list(*f.rest[0]).text}));
-    if (name == "circle" && count <= 2)
-        return Written{put("circle(" + at(0) + ")", 1), as_call, Kind::Flat};
+    if (name == "circle" && count <= 2) return flat_of(put("circle(" + at(0) + ")", 1));
     if (name == "rectangle" && count == 2)
         return Written{between_corners(name, lisp(*f.rest[0]), lisp(*f.rest[1])), as_call,
                        Kind::Flat};

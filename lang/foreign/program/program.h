@@ -173,11 +173,12 @@ class Writer {
     std::optional<Written> lisp_profile(const std::string &name, const Form &f);
     std::optional<Written> lisp_solid(const std::string &name, const Form &f);
     // What is done to shapes (lisp_changes.cpp).
+    bool is_by_point(const Node &n) const;
     std::string lisp_of_point(const Node &n);
     std::string lisp_color(const Node &n);
     Written lisp_painted(const Node &n);
     void lisp_setting(const Node &form);
-    std::optional<Written> lisp_change(const std::string &name, const Node &n, const Form &f);
+    std::optional<Written> lisp_change(const std::string &name, const Node &n, const Form &given);
 
     // Statements (write.cpp).
     void block(const std::vector<Statement> &body, bool top);
