@@ -425,6 +425,7 @@ void Lexer::strange(std::uint32_t begin, std::uint32_t end) {
     } else if (text[0] == '\'') {
         report(Code::BadCharacter, begin, end, "the language does not use `'`")
             .help("a string stands in double quotes, a comment begins with `//`");
+    } else if (text[0] == '@' && mark_of_wgsl(begin, end)) {
     } else if (text[0] == '@') {
         report(Code::BadCharacter, begin, end, "the language does not use " + quoted_code(text))
             .help(text == "@param"

@@ -18,5 +18,7 @@ Vocabulary vocabulary();
 
 // What a type of another language is called here, as `vec3` for HLSL's `float3`; else as it is.
 std::string_view our_type(std::string_view type); // foreign/answers.cpp
+// Whether shaders call the distance of all they draw so: `map`, `sceneSDF`, `GetDist`.
+bool names_a_scene(std::string_view name); // foreign/fields.cpp
 
 } // namespace fathom::lang

@@ -228,6 +228,26 @@ bool reads_list_by_point(const ir::Graph &graph, const std::vector<NodeId> &root
     });
 }
 
+// … an `if` that only spares work, as bounding volumes do: one arm is the other one, and more.
+bool spares_work(const ir::Graph &graph, const std::vector<NodeId> &roots) {
+    constexpr ir::OpSet joins{Op::Min, Op::Select, Op::Call};
+    return holds(graph, roots, [&](NodeId id, Op op) {
+        if (op != Op::Select || graph[id].type == ir::Type::Vec3) return false;
+        for (int arm : {1, 2}) {
+            const NodeId other = graph.arg(id, 3 - arm);
+            std::vector<NodeId> todo{graph.arg(id, arm)};
+            for (std::size_t steps = 0; !todo.empty() && steps < 100; ++steps) {
+                const NodeId at = todo.back();
+                todo.pop_back();
+                if (at == other) return !graph.is_constant(other);
+                if (!joins[graph[at].op]) continue;
+                todo.insert(todo.end(), graph.args(at).begin(), graph.args(at).end());
+            }
+        }
+        return false;
+    });
+}
+
 // … a function that leaves single precision where its argument is above 88.
 bool raises_e(const ir::Graph &graph, const std::vector<NodeId> &roots) {
     constexpr ir::OpSet powers{Op::Exp, Op::Exp2, Op::Sinh, Op::Cosh};
@@ -237,11 +257,14 @@ bool raises_e(const ir::Graph &graph, const std::vector<NodeId> &roots) {
 constexpr ir::OpSet told_of{Op::Floor, Op::Round, Op::Ceil, Op::Fract, Op::Mod, Op::Hash};
 
 // What makes the sides of a border agree, by what turns there.
-std::string way_to_meet(const std::optional<Op> &cause, bool by_list) {
+std::string way_to_meet(const std::optional<Op> &cause, bool by_list, bool spares) {
     if (by_list)
         return "go from one entry of a list to the next without a jump, with the place limited "
                "before `floor`: `let x = clamp(…, 0, last)`, then `mix(list[int(floor(x))], "
                "list[int(floor(x)) + 1], fract(x))`; ";
+    if (spares && cause == Op::Select)
+        return "leave the `if` out where it only spares work, since what is far off is skipped "
+               "without it, ";
     if (!cause || !told_of[*cause]) return "make both sides agree there, ";
     if (*cause == Op::Hash)
         return "give `hash` the number of the cell by `floor` or `round`, as in `hash(floor(p))`: "
@@ -327,7 +350,8 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
     switch (b.trouble) {
     case Trouble::Jump: {
         const bool by_list = reads_list_by_point(graph, scene.shapes[id].args);
-        const std::string meeting = way_to_meet(b.cause, by_list);
+        const std::string meeting =
+            way_to_meet(b.cause, by_list, spares_work(graph, scene.shapes[id].args));
         const auto [one_side, other_side] = two_points(b.side_a, b.side_b, dims);
         const auto [one, other] = two_numbers(b.value_a, b.value_b);
         const auto inexact = inexact_number(graph, scene.shapes[id].args);

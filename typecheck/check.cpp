@@ -6,6 +6,7 @@
 #include "typecheck/instances.h"
 #include "typecheck/interpreter.h"
 #include "typecheck/remedies.h"
+#include "typecheck/undrawn.h"
 
 #include "ir/background.h"
 #include "ir/passes/param_reads.h"
@@ -242,73 +243,6 @@ void add_fields(Interpreter &ev, std::uint32_t frame) {
         const ir::NodeId result = ir::substitute(graph, *value, {{graph.point(), point}});
         ev.scene.fields.push_back(graph.add_function({"field", {}, {point}, result}));
     }
-}
-
-bool is_flat_field(const lang::Function &f) {
-    return f.parameters[0].type->named == lang::TypeName::Vec2;
-}
-
-// The last function of the file that gives a number for a point, alone or with more behind it, by
-// what is written of it; one of a vec2 where there is none of a vec3.
-const lang::Function *last_field(const File &ast, bool alone) {
-    const lang::Function *out = nullptr;
-    for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
-        const auto *declared = std::get_if<lang::FunctionDecl>(&s.kind);
-        if (!declared) continue;
-        const lang::Function &f = ast.functions[declared->function];
-        const bool so = alone ? f.parameters.size() == 1 : f.parameters.size() > 1;
-        if (!so || !f.result || f.result->named != lang::TypeName::Float) continue;
-        const lang::TypeExpr *point = f.parameters[0].type;
-        if (point && (point->named == lang::TypeName::Vec3 ||
-                      (point->named == lang::TypeName::Vec2 && (!out || is_flat_field(*out)))))
-            out = &f;
-    }
-    return out;
-}
-
-// A file without a shape: what would draw what it declares.
-void report_no_shape(Interpreter &ev, const File &ast, std::uint32_t frame) {
-    bool declares = false, could = false; // … a shape, at other values
-    std::string_view shape;
-    for (const lang::Stmt &s : ast.blocks[ast.root].stmts) {
-        declares = declares || std::holds_alternative<lang::FunctionDecl>(s.kind);
-        const auto *value = std::get_if<lang::ExprStmt>(&s.kind);
-        could = could || std::holds_alternative<lang::For>(s.kind) ||
-                std::holds_alternative<lang::While>(s.kind) ||
-                (value && std::holds_alternative<lang::If>(ast.exprs[value->value].kind));
-        const auto *let = std::get_if<lang::Let>(&s.kind);
-        if (!let) continue;
-        declares = true;
-        const auto found = find_name(ev, frame, symbol_of(ast, let->name));
-        if (!found) continue;
-        if (ev.frames[found->frame].bindings[found->slot].value.kind == ValueKind::Shape)
-            shape = let->name.text;
-    }
-    const Span begin{ast.source, 0, 0};
-    if (!declares && !could) {
-        report(ev, Code::EmptyScene, begin,
-               "this file makes no shape, and declares nothing that another could import")
-            .help("the smallest scene is `sphere(1)`");
-        return;
-    }
-    Diagnostic &d =
-        report(ev, Code::NothingDrawn, begin, "this file makes no shape, so nothing is drawn");
-    const auto size = static_cast<std::uint32_t>(ev.sources[ast.source].text.size());
-    const auto add = [&](const std::string &line) {
-        const bool ended = ev.sources[ast.source].text.ends_with('\n');
-        d.help(fmt::format("write `{}` on a line of its own, unless another file imports it", line),
-               {{{ast.source, size, size}, (ended ? "" : "\n") + line + "\n"}});
-    };
-    if (!shape.empty())
-        add(std::string(shape));
-    else if (const lang::Function *field = last_field(ast, true))
-        add(is_flat_field(*field)
-                ? fmt::format("implicit2({}, within: ball(3)).extrude(1)", field->name->text)
-                : fmt::format("implicit({}, within: ball(3))", field->name->text));
-    else if (const lang::Function *given = last_field(ast, false))
-        d.help(fmt::format("`{0}(p => {1}(p, …), within: ball(3)){2}` makes a shape of `{1}`",
-                           is_flat_field(*given) ? "implicit2" : "implicit", given->name->text,
-                           is_flat_field(*given) ? ".extrude(1)" : ""));
 }
 
 void build_scene(Interpreter &ev, const std::vector<Contribution> &contributions, const File &ast,

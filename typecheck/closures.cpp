@@ -78,7 +78,8 @@ static Value result_of(Interpreter &ev, const Outcome &out, Span place) {
     if (auto merged = select_value(ev, returned, out.exit.value, out.value)) return *merged;
     report(
         ev, Code::StageMismatch, place,
-        "what this returns is chosen by the point, so every way has to give numbers of one type");
+        "what this returns is chosen by the point, so every way has to give numbers of one type, "
+        "or lists of as many");
     return poison();
 }
 

@@ -470,30 +470,4 @@ Value logical_or(Interpreter &ev, const Value &a, const Value &b) {
     return from_node(ev, ev.scene.graph.make(Op::Or, {to_node(ev, a), to_node(ev, b)}));
 }
 
-// Nothing where the two cannot be told apart by a number at field time (a shape in one arm, say).
-std::optional<Value> select_value(Interpreter &ev, const Value &condition, const Value &a,
-                                  const Value &b) {
-    if (condition.kind == ValueKind::Bool) return condition.num[0] != 0 ? a : b;
-    if (is_poison(a) || is_poison(b)) return poison();
-    if (a == b) return a;
-    if (!is_numeric(a) || !is_numeric(b)) return std::nullopt;
-    Value x = a, y = b;
-    Type tx = numeric_type(ev, x), ty = numeric_type(ev, y);
-    if (tx != ty && (tx == Type::Int || ty == Type::Int)) {
-        x = to_float(ev, x), y = to_float(ev, y);
-        tx = numeric_type(ev, x), ty = numeric_type(ev, y);
-    }
-    ir::NodeId nx = to_node(ev, x), ny = to_node(ev, y);
-    if (tx != ty) {
-        if (tx == Type::Float && ir::is_vector(ty))
-            nx = ev.scene.graph.splat(nx, ty);
-        else if (ty == Type::Float && ir::is_vector(tx))
-            ny = ev.scene.graph.splat(ny, tx);
-        else
-            return std::nullopt;
-    }
-    return from_node(ev, ev.scene.graph.make(Op::Select, {node_of(condition), nx, ny}),
-                     a.color || b.color);
-}
-
 } // namespace fathom::typecheck

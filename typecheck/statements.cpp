@@ -79,7 +79,7 @@ static Exit sequence(Interpreter &ev, const Exit &first, Span place,
         else {
             report(ev, Code::StageMismatch, place,
                    "what this returns is chosen by the point, so both ways have to give numbers of "
-                   "one type");
+                   "one type, or lists of as many");
             out.value = poison();
         }
     }
@@ -309,7 +309,7 @@ static Outcome run_branches(Interpreter &ev, const File &ast, const lang::If &no
     report(
         ev, Code::StageMismatch, ast.exprs[node.branches[branch].condition].span,
         "this condition depends on the point or on time, so both arms have to give numbers of one "
-        "type")
+        "type, or lists of as many")
         .help("choose between shapes with their fields: `blend(a, b, p => …)`, or cut them with "
               "`within:` or `&`");
     Outcome out;

@@ -160,12 +160,13 @@ bool ForeignSyntax::foreign_body(Index at) {
         foreign_then(at);
         return true;
     }
-    const bool statement =
-        found == Tok::Return || found == Tok::Break || found == Tok::Name || found == Tok::Number;
-    if (!statement) return false;
+    const bool nested = is_one_of(found, {Tok::For, Tok::While, Tok::If}); // `if a for …`
+    if (!nested && !is_one_of(found, {Tok::Return, Tok::Break, Tok::Name, Tok::Number}))
+        return false;
     Index end = at;
     while (!ends_statement(end) && kind(end) != Tok::Else)
         end = match(end) > end ? match(end) + 1 : end + 1;
+    if (nested && is_one_of(Tok::Else, {kind(end), kind(end + 1)})) return false; // whose is it?
     std::string told = "{ " + std::string(text(token(at).begin, token(end - 1).end)) + " }";
     std::vector<Edit> edits{{{id_, token(at).begin, token(at).begin}, "{ "},
                             {{id_, token(end - 1).end, token(end - 1).end}, " }"}};

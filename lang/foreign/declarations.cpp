@@ -24,33 +24,13 @@ constexpr std::array<std::string_view, 4> streams = {"varying", "attribute", "ou
 constexpr std::array<std::string_view, 10> screens = {
     "iResolution", "u_resolution", "uResolution", "resolution", "iMouse",
     "u_mouse",     "uMouse",       "mouse",       "iFrame",     "iTimeDelta"};
+constexpr std::size_t most_uses = 40; // of a name that one edit changes
 constexpr std::array<std::string_view, 9> clocks = {
     "time", "iTime", "u_time", "uTime", "iGlobalTime", "t", "seconds", "elapsed", "globalTime"};
-
-// A range for a number that has none: from half to twice the number, so that no size is 0.
-std::string range_around(std::string_view number, bool negative) {
-    const auto value = parse_number(number);
-    if (!value || *value == 0) return "-1..1";
-    const bool whole = number.find_first_not_of("0123456789") == std::string_view::npos;
-    const std::string half = format_shortest(whole ? std::ceil(*value / 2) : *value / 2),
-                      twice = format_shortest(2 * *value);
-    return negative ? "-" + twice + "..-" + half : half + ".." + twice;
-}
 
 // What is known as `time` where it is used, too.
 bool means_time(std::string_view name) {
     return name == "time" || name == "iTime" || name == "u_time" || name == "iGlobalTime";
-}
-
-// What a variable of a type holds before it is given a value.
-std::string_view zero_of(std::string_view type) {
-    constexpr std::pair<std::string_view, std::string_view> zeros[] = {
-        {"int", "0"},        {"bool", "false"},   {"vec2", "vec2(0)"},
-        {"vec3", "vec3(0)"}, {"vec4", "vec4(0)"}, {"color", "black"},
-        {"shape", "empty"},  {"string", "\"\""},  {"float", "0.0"}};
-    for (const auto &[name, zero] : zeros)
-        if (name == type) return zero;
-    return {};
 }
 
 // A type of their own making, as `Hit`, `T`: no vector of another library, whose names have digits.
@@ -61,6 +41,15 @@ bool is_their_own(std::string_view type) {
 }
 
 } // namespace
+
+std::string range_around(std::string_view number, bool negative) {
+    const auto value = parse_number(number);
+    if (!value || *value == 0) return "-1..1";
+    const bool whole = number.find_first_not_of("0123456789") == std::string_view::npos;
+    const std::string half = format_shortest(whole ? std::ceil(*value / 2) : *value / 2),
+                      twice = format_shortest(2 * *value);
+    return negative ? "-" + twice + "..-" + half : half + ".." + twice;
+}
 
 // The parameters between two parentheses, as they would be written here.
 std::string ForeignSyntax::parameters_text(Index open) const {
@@ -148,9 +137,16 @@ bool ForeignSyntax::foreign_stream(Index first, Index name) {
         return true;
     }
     if (is_one_of(declared, clocks)) {
+        std::vector<Edit> edits{away}; // and its uses, where they are not known for the time
+        for (Index i = name + 1;
+             !means_time(declared) && may_look_far() && i < tokens_.tokens.size() && !edits.empty();
+             ++i) {
+            if (kind(i) != Tok::Name || text(i) != declared || kind(i - 1) == Tok::Dot) continue;
+            edits.push_back({span(i, i), "time"});
+            if (kind(i - 1) == Tok::Name || edits.size() > most_uses) edits.clear(); // another one
+        }
         foreign(span(first, name), "the seconds are `time`")
-            .help("leave the line away, and write `time`",
-                  means_time(declared) ? std::vector<Edit>{away} : std::vector<Edit>{});
+            .help("leave the line away, and write `time`", std::move(edits));
         return true;
     }
     if (is_one_of(declared, screens)) {
@@ -270,10 +266,12 @@ void ForeignSyntax::foreign_function(Index first, Index name, bool has_type) {
     } else if (has_type && !is_their_own(text(name - 1)))
         head += " -> " + std::string(our_type(text(name - 1)));
     module_head(first, after, head);
-    const std::vector<Edit> calls = returned_instead(name, after, head);
+    const bool below = kind(after) == Tok::End && kind(after + 1) == Tok::StrayBrace &&
+                       text(after) != ";"; // the body's brace
+    const std::vector<Edit> calls = returned_instead(name, below ? after + 1 : after, head);
     std::vector<Edit> edits{{span(first, after - 1), head}};
     edits.insert(edits.end(), calls.begin(), calls.end());
-    if (kind(after) == Tok::End && kind(after + 1) == Tok::StrayBrace && text(after) != ";") {
+    if (below) {
         edits.push_back({{id_, token(after - 1).end, token(after + 1).end}, " {"});
         failed_ = after + 1;
     }
@@ -285,7 +283,7 @@ void ForeignSyntax::foreign_function(Index first, Index name, bool has_type) {
         return;
     }
     Diagnostic &d = foreign(span(first, name), "a function is declared with `fn`");
-    std::string shape = kind(after) == Tok::End ? "" : shape_of_field(name);
+    std::string shape = kind(after) == Tok::End && failed_ <= after ? "" : shape_of_field(name);
     if (!shape.empty()) {
         const std::uint32_t end = token(match(failed_ > after ? failed_ : after)).end;
         edits.push_back({{id_, end, end}, "\n" + shape});

@@ -1,24 +1,28 @@
 // What the names of other languages say: a distance of a shader, which makes a shape here, names with
 // hyphens, and what is set from outside.
 #include "lang/foreign/foreign.h"
+#include "lang/vocabulary.h"
 
 #include <array>
 
 namespace fathom::lang {
 
-// The shape of a function that gives a scene's distance, as shaders name it; else empty.
-std::string ForeignSyntax::shape_of_field(Index name) const {
+bool names_a_scene(std::string_view name) {
     constexpr std::array<std::string_view, 15> names = {
         "map",  "scene",    "sdf",      "sdscene",   "de",      "getdist",     "mapscene", "world",
         "dist", "scenesdf", "sdfscene", "scenedist", "sdworld", "getdistance", "mapworld"};
     std::string plain; // in small letters, without `_`
-    for (const char c : text(name))
+    for (const char c : name)
         if (c != '_') plain += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return is_one_of(std::string_view(plain), names);
+}
+
+// The shape of a function that gives a scene's distance, as shaders name it; else empty.
+std::string ForeignSyntax::shape_of_field(Index name) const {
     const Index open = name + 1, close = match(open);
     Index type = open + 1;
     if (kind(type) == Tok::In || text(type) == "in" || text(type) == "const") ++type;
-    if (!is_one_of(std::string_view(plain), names) || text(type) != "vec3" || type + 2 != close ||
-        !may_look_far())
+    if (!names_a_scene(text(name)) || text(type) != "vec3" || type + 2 != close || !may_look_far())
         return {};
     for (Index i = 0; i < tokens_.tokens.size(); ++i)
         if (text(i) == "implicit") return {};

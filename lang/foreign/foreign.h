@@ -82,6 +82,7 @@ class ForeignWords : protected WordReading {
     enum class Faces { None, OfSolid, HandedOn };
     Faces faces_of(Span assignment) const;
     bool told_before(std::uint32_t begin, std::uint32_t end, const std::vector<Edit> &edits);
+    bool mark_of_wgsl(std::uint32_t begin, std::uint32_t end);
 
     struct ToldName {
         Span first;
@@ -100,6 +101,7 @@ class ForeignWords : protected WordReading {
     const bool beyond_ascii_;                     // the text has other letters somewhere
     std::unordered_set<std::uint32_t> pair_ends_; // signs that close the `‖` before them
     std::uint32_t open_choices_ = 0;              // `#if`s whose `#endif` is yet to come
+    std::uint32_t marked_until_ = 0;              // of WGSL: the end of what was told last
 };
 
 // What the builder of the tree asks; see builder.h.
@@ -149,6 +151,7 @@ class ForeignSyntax : protected TokenReading {
     struct Changed {
         std::size_t place; // among the parameters
         Index type, name;
+        bool is_fresh; // `out`, without a value before
     };
     std::optional<Changed> changed_by(Index open) const;
     std::vector<Edit> returned_instead(Index name, Index body, std::string &head) const;
@@ -321,6 +324,13 @@ inline constexpr std::string_view changes_nothing =
     "a function changes none of its arguments: it returns what is new, several numbers as a "
     "vector, "
     "`fn f(p: vec3) = vec2(d, id)`, whose parts are `f(p).x` and `f(p).y`";
+
+// A range for a number that has none: from half to twice the number, so that no size is 0. The number
+// is without its sign.
+std::string range_around(std::string_view number, bool negative);
+
+// What a variable of a type of ours holds before it is given a value; empty where that is not known.
+std::string_view zero_of(std::string_view type);
 
 // Half of a value that stands in a text; a shape of OpenSCAD that has two dimensions.
 std::string half_of(std::string_view value);

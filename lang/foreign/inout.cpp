@@ -1,5 +1,5 @@
 // GLSL's `void fold(inout vec2 p, float a) { p = … }`, called as `fold(q.xz, 1.0);`: a function that
-// gives the new `p`, and calls that assign it.
+// gives the new `p`, and calls that assign it. What is `out` is no argument then.
 #include "lang/foreign/foreign.h"
 #include "lang/vocabulary.h"
 
@@ -11,6 +11,16 @@ constexpr std::size_t longest_text = 20'000; // tokens: each such function looks
 
 } // namespace
 
+std::string_view zero_of(std::string_view type) {
+    constexpr std::pair<std::string_view, std::string_view> zeros[] = {
+        {"int", "0"},        {"bool", "false"},   {"vec2", "vec2(0)"},
+        {"vec3", "vec3(0)"}, {"vec4", "vec4(0)"}, {"color", "black"},
+        {"shape", "empty"},  {"string", "\"\""},  {"float", "0.0"}};
+    for (const auto &[name, zero] : zeros)
+        if (name == type) return zero;
+    return {};
+}
+
 // The parameter that is changed, where there is one: its place in the row, and its name.
 std::optional<ForeignSyntax::Changed> ForeignSyntax::changed_by(Index open) const {
     std::optional<Changed> out;
@@ -19,10 +29,9 @@ std::optional<ForeignSyntax::Changed> ForeignSyntax::changed_by(Index open) cons
     for (Index i = open + 1; i < close; ++i) {
         if (match(i) > i) i = match(i);
         if (kind(i) == Tok::Comma) ++place;
-        if (text(i) == "out") return std::nullopt; // has no value before
-        if (text(i) != "inout") continue;
+        if (text(i) != "inout" && text(i) != "out") continue;
         if (out || kind(i + 1) != Tok::Name || kind(i + 2) != Tok::Name) return std::nullopt;
-        out = Changed{place, i + 1, i + 2};
+        out = Changed{place, i + 1, i + 2, text(i) == "out"};
     }
     return out;
 }
@@ -33,11 +42,14 @@ std::vector<Edit> ForeignSyntax::returned_instead(Index name, Index body, std::s
     const auto by = changed_by(name + 1);
     const Index end = match(body);
     if (!by || tokens_.tokens.size() > longest_text || end <= body) return {};
-    const std::string ours(text(by->name));
+    const std::string ours(text(by->name)), type(our_type(text(by->type)));
+    const std::string_view zero = zero_of(type);
+    if (by->is_fresh && (text(name - 1) != "void" || zero.empty())) return {};
     const auto insert = [&](std::uint32_t at, std::string what) {
         return Edit{{id_, at, at}, std::move(what)};
     };
-    std::vector<Edit> edits{insert(token(body).end, " var " + ours + " = " + ours + ";")};
+    const std::string first = by->is_fresh ? std::string(zero) : ours;
+    std::vector<Edit> edits{insert(token(body).end, " var " + ours + " = " + first + ";")};
     for (Index i = body + 1; i < end; ++i) {
         if (kind(i) != Tok::Return) continue;
         const Index past = statement_end(i);
@@ -62,8 +74,23 @@ std::vector<Edit> ForeignSyntax::returned_instead(Index name, Index body, std::s
         if (to == from || !is_one_of(kind(to), {Tok::Comma, Tok::Close})) return {};
         const std::string place(text(token(from).begin, token(to - 1).end));
         edits.push_back(insert(token(i).begin, place + " = "));
+        if (!by->is_fresh) continue;
+        const bool alone = from == i + 2 && to == close, leads = from == i + 2 && !alone;
+        const std::uint32_t begin = token(leads || alone ? from : from - 1).begin;
+        edits.push_back({{id_, begin, leads ? token(to + 1).begin : token(to - 1).end}, ""});
     }
-    head = head.substr(0, head.rfind(')') + 1) + " -> " + std::string(our_type(text(by->type)));
+    head.resize(head.rfind(')') + 1);
+    if (by->is_fresh) {
+        const std::string written = ours + ": " + type;
+        std::size_t at = head.find("(" + written) + 1, length = written.size();
+        if (at > 0)
+            length += head.compare(at + length, 2, ", ") == 0 ? 2 : 0;
+        else
+            at = head.find(", " + written), length += 2;
+        if (at == std::string::npos) return {};
+        head.erase(at, length);
+    }
+    head += " -> " + type;
     return edits;
 }
 

@@ -42,10 +42,12 @@ bool ForeignSyntax::foreign_struct(Index first) {
         {{id_, token(first).begin, token(std::max(close, end - 1)).end}, maker}};
     // the names that hold one
     std::vector<std::string_view> holders;
+    bool is_bound = false; // `var<uniform> u: Uniforms`, whose parts are told with it
     for (Index i = close + 1; i + 2 < tokens_.tokens.size(); ++i) {
         if (kind(i) != Tok::Name || text(i) != text(name)) continue;
         if (kind(i + 1) == Tok::Name) holders.push_back(text(i + 1)); // `Hit h`
         if (kind(i - 1) == Tok::Colon && kind(i - 2) == Tok::Name) holders.push_back(text(i - 2));
+        is_bound = is_bound || (kind(i - 1) == Tok::Colon && text(i - 3) == ">");
         if (kind(i - 1) == Tok::Assign && kind(i - 2) == Tok::Name) holders.push_back(text(i - 2));
     }
     for (Index i = close + 1; i + 1 < tokens_.tokens.size() && edits.size() < most_edits; ++i) {
@@ -58,6 +60,11 @@ bool ForeignSyntax::foreign_struct(Index first) {
     }
     failed_ = close;
     lost_.push_back(name);
+    if (is_bound) {
+        foreign(span(first, name), "nothing is bound from outside: what a slider sets is a `param`")
+            .help("leave it away", {{edits.front().span, ""}});
+        return true;
+    }
     foreign(span(first, name),
             "there are no records: several values are a list, made by a function")
         .help("write " + in_code(maker) + ", and " + in_code("v[0]") + " for " +

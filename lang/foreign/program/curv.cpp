@@ -51,7 +51,7 @@ class CurvReader : PieceReader {
             while (!takes("in")) {
                 if (takes(";")) continue;
                 out.push_back(params ? param() : definition());
-                if (!sees("in")) want(";");
+                if (!sees("in") && pieces_[at_ - 1].text != ";") want(";"); // a body takes its own
             }
         }
         Statement s;

@@ -116,18 +116,35 @@ Written Writer::curv_field(const Node &record) {
     for (const std::string &key : record.names)
         if (key != "dist" && key != "bbox" && key != "is_3d" && key != "is_2d" && key != "colour")
             throw Unsure{};
-    scopes_.emplace_back();
-    if (dist->names.size() == 1) {
-        if (flat) throw Unsure{}; // its point has a height, too
-        scopes_.back().names[dist->names[0]] = {"p", as_call, Kind::Vector};
-    } else {
+    const auto name_point = [&](const std::vector<std::string> &names) {
+        if (names.size() == 1) {
+            if (flat) throw Unsure{}; // its point has a height, too
+            scopes_.back().names[names[0]] = {"p", as_call, Kind::Vector};
+            return;
+        }
         const std::array<const char *, 4> parts = {"p.x", "p.y", flat ? "0" : "p.z", "time"};
-        if (dist->names.size() != 4) throw Unsure{};
+        if (names.size() != 4) throw Unsure{};
         for (std::size_t i = 0; i < 4; ++i)
-            scopes_.back().names[dist->names[i]] = {parts[i], as_call, Kind::Number};
-    }
+            scopes_.back().names[names[i]] = {parts[i], as_call, Kind::Number};
+    };
+    scopes_.emplace_back();
+    name_point(dist->names);
     const std::string field = text(dist->parts[0]);
     scopes_.pop_back();
+    std::string paint;
+    if (const Node *color = part_of(record, "colour")) {
+        std::optional<std::string> painted;
+        if (color->is == Is::Lambda) {
+            scopes_.emplace_back();
+            name_point(color->names);
+            if (!flat) painted = curv_color(color->parts[0]);
+            scopes_.pop_back();
+        }
+        if (painted)
+            paint = ".paint(p => " + *painted + ")";
+        else
+            lost_.insert("a colour");
+    }
     std::string within = "everywhere";
     if (box) {
         if (box->is != Is::List || box->parts.size() != 2) throw Unsure{};
@@ -139,7 +156,7 @@ Written Writer::curv_field(const Node &record) {
         within = call_text("aabb", {corner(box->parts[0]), corner(box->parts[1])});
     }
     if (flat) return flat_of("implicit2(p => " + field + ", within: " + within + ")");
-    return solid_of("implicit(p => " + field + ", within: " + within + ")");
+    return solid_of("implicit(p => " + field + ", within: " + within + ")" + paint);
 }
 
 // `s >> f x`: what `f` with the argument, or without one, does to the shape.
@@ -194,16 +211,27 @@ Written Writer::curv_changed(const Written &of, const std::string &name, const N
         return changed("repeat([" + text(a->parts[0]) + ", " + text(a->parts[1]) + ", 0])");
     }
     if (name != "colour" && name != "color") throw Unsure{};
-    if (a->is == Is::Call && a->parts[1].is == Is::List && a->parts[1].parts.size() == 3) {
-        const Node &of_numbers = a->parts[0];
-        const bool hsv = of_numbers.is == Is::Member && of_numbers.text == "HSV" &&
-                         is_named(of_numbers.parts[0], "sRGB");
-        if (!hsv && !is_named(of_numbers, "sRGB") && !is_named(of_numbers, "rgb")) throw Unsure{};
-        const std::string all = text(a->parts[1]);
-        return changed((hsv ? "paint(hsv(" : "paint(rgb(") + all.substr(1, all.size() - 2) + "))");
-    }
-    if (a->is != Is::Name) throw Unsure{};
-    return changed("paint(" + (find(a->text) ? text(*a) : a->text) + ")");
+    if (const auto color = curv_color(*a)) return changed("paint(" + *color + ")");
+    lost_.insert("a colour");
+    return of;
+}
+
+// `red`, `sRGB[r, g, b]`, `sRGB.HSV[h, s, v]`, `hue h`, `grey v`; nothing where it is another one.
+std::optional<std::string> Writer::curv_color(const Node &n) {
+    if (n.is == Is::Name) return find(n.text) ? text(n) : n.text;
+    if (n.is != Is::Call) return std::nullopt;
+    const Node &of = n.parts[0], &given = n.parts[1];
+    const bool of_space = of.is == Is::Member && is_named(of.parts[0], "sRGB");
+    const std::string &name = of.text;
+    if (of.is != Is::Name && !of_space) return std::nullopt;
+    if (name == "hue") return "hsv(" + text(given) + ", 1, 1)";
+    if (name == "grey" || name == "gray") return "vec3(" + text(given) + ")";
+    const bool hsv = of_space && name == "HSV";
+    if ((!hsv && name != "sRGB" && name != "rgb") || given.is != Is::List ||
+        given.parts.size() != 3)
+        return std::nullopt;
+    const std::string all = text(given);
+    return (hsv ? "hsv(" : "rgb(") + all.substr(1, all.size() - 2) + ")";
 }
 
 Written Writer::curv_pipe(const Node &n) {
@@ -215,6 +243,10 @@ Written Writer::curv_pipe(const Node &n) {
     if (f.is == Is::Name)
         if (const Written *own = find(f.text); own && own->kind == Kind::Function)
             return {call_text(own->text, {of.text}), as_call, Kind::Unknown};
+    if (named.is == Is::Name && !find(named.text))
+        return unread_change(of, named.text,
+                             f.is == Is::Call ? std::vector{text(f.parts[1])}
+                                              : std::vector<std::string>{});
     throw Unsure{};
 }
 
@@ -226,7 +258,8 @@ Written Writer::curv_call(const Node &n) {
             return solid_of(
                 call_text("blend", {text(a.parts[1]), text(a.parts[0]), text(callee.parts[1])}));
         if (is_curv_change(name)) return curv_changed(value(a), name, &callee.parts[1]);
-        throw Unsure{};
+        if (find(name) || is_mathematical(name)) throw Unsure{};
+        return unread_call(name, {text(callee.parts[1]), text(a)});
     }
     if (callee.is == Is::Member) {
         const Node &of = callee.parts[0];
@@ -241,10 +274,15 @@ Written Writer::curv_call(const Node &n) {
     }
     if (callee.is != Is::Name) throw Unsure{};
     if (const Written *own = find(callee.text)) {
-        if (own->kind == Kind::List || own->kind == Kind::Vector) {
-            const Node *at = a.is == Is::List && a.parts.size() == 1 ? &a.parts[0] : nullptr;
+        const Node *at = a.is == Is::List && a.parts.size() == 1 ? &a.parts[0] : nullptr;
+        constexpr std::string_view axes = "XYZ";
+        const bool axis = at && at->is == Is::Name && at->text.size() == 1 &&
+                          axes.find(at->text[0]) != std::string_view::npos; // `p[X]`
+        if (own->kind == Kind::List || own->kind == Kind::Vector ||
+            (own->kind == Kind::Unknown && at && (axis || at->is == Is::Number))) {
             if (!at) throw Unsure{};
-            return {own->text + "[" + text(*at) + "]", as_call, Kind::Unknown};
+            const std::string place = axis ? std::to_string(axes.find(at->text[0])) : text(*at);
+            return {own->text + "[" + place + "]", as_call, Kind::Unknown};
         }
         if (own->kind != Kind::Function) throw Unsure{};
         std::vector<std::string> arguments;
@@ -270,7 +308,7 @@ Written Writer::curv_call(const Node &n) {
     Node plain = node(Is::Call, "", {node(Is::Name, callee.text == "mag" ? "norm" : callee.text)});
     const bool spread = callee.text == "max" || callee.text == "min" || callee.text == "dot" ||
                         callee.text == "cross";
-    if (callee.text == "phase") throw Unsure{};
+    if (!is_mathematical(plain.parts[0].text)) return unread_call(callee.text, {text(a)});
     if (spread && a.is == Is::List)
         plain.parts.insert(plain.parts.end(), a.parts.begin(), a.parts.end());
     else

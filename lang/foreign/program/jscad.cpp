@@ -1,6 +1,7 @@
 // The shapes and changes of JSCAD, where up is z, and of scripts that write ours as JavaScript.
 #include "lang/foreign/program/program.h"
 
+#include <algorithm>
 #include <array>
 
 namespace fathom::lang::program {
@@ -161,6 +162,56 @@ std::optional<Written> Writer::jscad(const std::string &name, const Node &n) {
     for (const auto &[key, given_value] : g.by_name)
         if (made && !g.asked.contains(key)) throw Unsure{};
     return made;
+}
+
+// `getParameterDefinitions = () => [{ name: 'r', type: 'float', initial: 1, min: 0, max: 2 }]`: a
+// `param` each.
+void Writer::jscad_params(const Statement &s) {
+    const Node *list = nullptr;
+    const std::vector<Statement> *body = s.name == defines_params ? &s.body : nullptr;
+    if (s.does == Does::Set && s.targets.size() == 1 && is_named(s.targets[0], defines_params) &&
+        s.value.is == Is::Lambda) {
+        body = &s.value.body;
+        if (!s.value.parts.empty()) list = &s.value.parts[0];
+    }
+    if (!body) return;
+    if (!list && body->size() == 1 && body->front().does == Does::Return)
+        list = &body->front().value;
+    if (!list || list->is != Is::List) throw Unsure{};
+    for (const Node &one : list->parts) {
+        std::map<std::string, const Node *> of;
+        for (std::size_t i = 0; one.is == Is::Record && i < one.parts.size(); ++i)
+            of[one.names[i]] = &one.parts[i];
+        const Node *name = of["name"], *type = of["type"];
+        const Node *first = of["initial"] ? of["initial"] : of["default"];
+        if (!name || !type) throw Unsure{};
+        if (type->text == "group") continue; // a heading
+        const auto slider = [&](Kind kind) {
+            const std::string ours = fresh(name->text);
+            scopes_.back().taken.insert(ours);
+            slider_[name->text] = {ours, as_call, kind};
+            return ours;
+        };
+        const bool truth = type->text == "checkbox";
+        if (truth) {
+            const bool on = of["checked"] && is_named(*of["checked"], "true");
+            line("param " + slider(Kind::Unknown) + " = " + (on ? "true" : "false"));
+            continue;
+        }
+        const bool whole = type->text == "int";
+        if (!first ||
+            (!whole && type->text != "float" && type->text != "number" && type->text != "slider"))
+            throw Unsure{};
+        std::string value_of = text(*first);
+        const bool negative = value_of.starts_with('-');
+        const std::string range = of["min"] && of["max"]
+                                      ? text(*of["min"], 8) + ".." + text(*of["max"], 8)
+                                      : range_around(value_of.substr(negative), negative);
+        if (!whole && value_of.find('.') == std::string::npos &&
+            std::ranges::count(range, '.') == 2) // between the ends no whole numbers alone
+            value_of += ".0";
+        line("param " + slider(Kind::Number) + " = " + value_of + " in " + range);
+    }
 }
 
 // Scripts that write the library's own names.

@@ -109,6 +109,7 @@ struct Written {
 };
 
 constexpr int as_call = 12;
+constexpr std::string_view defines_params = "getParameterDefinitions"; // of JSCAD
 inline Written solid_of(std::string text) { return {std::move(text), as_call, Kind::Solid}; }
 inline Written flat_of(std::string text) { return {std::move(text), as_call, Kind::Flat}; }
 
@@ -129,6 +130,8 @@ struct Thing {
 
 // The first answer to a program of OpenSCAD that has sines of degrees; false where there is none.
 bool answer_degrees(const Source &source, SourceId id, Diagnostics &diagnostics);
+// The answer to a shader that another program has in a text; false where there is none.
+bool answer_hosted(const Source &source, SourceId id, Diagnostics &diagnostics);
 
 class Writer {
   public:
@@ -137,6 +140,8 @@ class Writer {
     std::string program(const std::vector<Statement> &statements);
     std::string program(const std::vector<TopForm> &forms); // of Bauble and libfive
     const std::set<std::string> &lost() const { return lost_; }
+    // Names of theirs that stand for nothing here: the text calls them by `name_of_curv` and the like.
+    const std::set<std::string> &unread() const { return unread_; }
 
   private:
     struct Scope {
@@ -221,6 +226,9 @@ class Writer {
     std::string turn_of(const Node &lambda);
     Written lambda(const Node &n);
     std::optional<std::string> constant(const Node &n) const;
+    Written unread_call(const std::string &name, const std::vector<std::string> &arguments);
+    Written unread_change(const Written &of, const std::string &name,
+                          const std::vector<std::string> &arguments);
     Written linspace(const Node &n);
     Written mathematics(const std::string &name, const Node &n);
     Given given(const Node &n, std::size_t first);
@@ -234,6 +242,7 @@ class Writer {
     Written joined(const std::string &name, const Node &n, std::size_t first,
                    std::optional<Written> before);
     std::optional<Written> jscad(const std::string &name, const Node &n);
+    void jscad_params(const Statement &definitions);
     std::optional<Written> jscad_solid(const std::string &name, Given &g);
     std::optional<Written> jscad_change(const std::string &name, const Node &n);
     std::optional<Written> script_shape(const std::string &name, Given &g);
@@ -241,6 +250,7 @@ class Writer {
     Written curv_joined(const std::string &name, const Node &list, const std::string &k);
     std::optional<Written> curv_shape(const std::string &name, const Node &argument);
     Written curv_field(const Node &record);
+    std::optional<std::string> curv_color(const Node &n);
     Written curv_changed(const Written &of, const std::string &name, const Node *argument);
     Written curv_pipe(const Node &n);
     Written curv_call(const Node &n);
@@ -256,9 +266,11 @@ class Writer {
     std::map<std::string, std::size_t> arities_;  // of functions of Curv
     std::map<std::string, std::string> imported_; // what a name of theirs stands for
     std::string gathered_;                        // the name that the loop being written adds to
-    std::string last_;                            // the shape named last
+    std::string sliders_;                         // the argument of JSCAD's `main`, and its parts
+    std::map<std::string, Written> slider_;
+    std::string last_; // the shape named last
     bool shown_ = false;
-    std::set<std::string> lost_, helpers_; // `helpers_`: functions of ours that it uses
+    std::set<std::string> lost_, unread_, helpers_; // `helpers_`: functions of ours that it uses
     std::string out_;
     int depth_ = 0, nodes_ = 0, level_ = 0;
 };
@@ -270,5 +282,6 @@ std::string halved(std::string_view value); // a size's half
 std::string negated(std::string_view value);
 std::string between_corners(std::string_view shape, const Written &low, const Written &high);
 std::string wrapped(const Written &w, int tighter_than);
+bool is_mathematical(std::string_view name); // what Writer::mathematics() knows
 
 } // namespace fathom::lang::program

@@ -128,7 +128,7 @@ std::optional<Told> told_by_words(const std::vector<Piece> &pieces) {
 }
 
 struct Rewritten {
-    std::string text, lost; // what is lost, as words
+    std::string text, lost, unread; // what is lost and not read, as words
     Of of;
     Span at; // what tells it
 };
@@ -136,7 +136,7 @@ struct Rewritten {
 std::optional<Rewritten> rewrite_of(const Told &told, std::string_view text, SourceId id) {
     const bool python = told.of == Of::Sdf;
     Writer writer(told.of);
-    Rewritten out{{}, {}, told.of, {id, told.begin, told.end}};
+    Rewritten out{{}, {}, {}, told.of, {id, told.begin, told.end}};
     if (told.of == Of::Lisp) {
         out.text = writer.program(read_lisp(text));
     } else {
@@ -145,6 +145,8 @@ std::optional<Rewritten> rewrite_of(const Told &told, std::string_view text, Sou
             writer.program(told.of == Of::Curv ? read_curv(pieces) : read_script(pieces, python));
     }
     for (const std::string &one : writer.lost()) out.lost += (out.lost.empty() ? "" : "; ") + one;
+    for (const std::string &one : writer.unread())
+        out.unread += (out.unread.empty() ? "`" : ", `") + one + "`";
     return out;
 }
 
@@ -181,6 +183,7 @@ std::optional<Rewritten> rewrite(std::string_view text, SourceId id) {
 } // namespace
 
 bool answer(const Source &source, SourceId id, Diagnostics &diagnostics) {
+    if (answer_hosted(source, id, diagnostics)) return true;
     auto rewritten = rewrite(source.text, id);
     if (!rewritten) return answer_degrees(source, id, diagnostics);
     if (!source.text.ends_with('\n')) rewritten->text.pop_back();
@@ -189,6 +192,9 @@ bool answer(const Source &source, SourceId id, Diagnostics &diagnostics) {
     if (const std::string_view differs = difference_of(rewritten->of); !differs.empty())
         d.note(std::string(differs));
     if (!rewritten->lost.empty()) d.note("left away: " + rewritten->lost);
+    if (!rewritten->unread.empty())
+        d.note("not known here: " + rewritten->unread +
+               ", to be written otherwise where it stands");
     d.help("write all of it so:",
            {{{id, 0, static_cast<std::uint32_t>(source.text.size())}, rewritten->text}});
     return true;

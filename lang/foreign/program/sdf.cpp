@@ -192,6 +192,10 @@ std::optional<Written> Writer::sdf_change(const std::string &name, const Written
         const std::string other = need(g, 0, "other"), k = or_else(g, 1, "k", "0.5");
         return Written{call_text(name, {other, of.text, k}), as_call, kind};
     }
+    if (name == "k") { // of what is joined to another one; what others are joined to ignores it
+        taken(g, 0, name);
+        return of;
+    }
     if (name == "negate") return Written{call_text("complement", {of.text}), as_call, kind};
     if (name == "extrude")
         return Written{head + call_text(name, {need(g, 0, "h")}), as_call, Kind::Solid};

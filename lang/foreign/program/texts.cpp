@@ -10,6 +10,29 @@ std::string call_text(std::string_view name, const std::vector<std::string> &arg
     return out + (arguments.empty() ? "()" : ")");
 }
 
+static std::string_view ending_of(Of of) {
+    switch (of) {
+    case Of::Sdf: return "_of_sdf";
+    case Of::Jscad: return "_of_jscad";
+    case Of::Three:
+    case Of::Script: return "_of_script";
+    case Of::Curv: return "_of_curv";
+    case Of::Lisp: return "_of_lisp";
+    }
+    return {};
+}
+
+// A call that only its name keeps from being read: a few of them leave the rest of use.
+Written Writer::unread_call(const std::string &name, const std::vector<std::string> &arguments) {
+    constexpr std::size_t most = 4;
+    if (unread_.insert(name).second && unread_.size() > most) throw Unsure{};
+    return {call_text(name + std::string(ending_of(of_)), arguments), as_call, Kind::Unknown};
+}
+Written Writer::unread_change(const Written &of, const std::string &name,
+                              const std::vector<std::string> &arguments) {
+    return {wrapped(of, as_call) + "." + unread_call(name, arguments).text, as_call, of.kind};
+}
+
 std::string wrapped(const Written &w, int needs) {
     return w.binds < needs ? "(" + w.text + ")" : w.text;
 }

@@ -133,6 +133,10 @@ Written Writer::value(const Node &n) {
         return {call_text("union", {w.text}), as_call, Kind::Solid};
     }
     case Is::Member: {
+        if (!sliders_.empty() && is_named(n.parts[0], sliders_)) {
+            if (!slider_.contains(n.text)) throw Unsure{};
+            return slider_.at(n.text);
+        }
         if (n.text.size() == 1 && std::string_view("xyz").find(n.text[0]) < 3)
             return {text(n.parts[0], as_call) + "." + n.text, as_call, Kind::Number};
         if (n.text == "length" && of_ != Of::Sdf)
@@ -255,6 +259,14 @@ Given Writer::given(const Node &n, std::size_t first) {
     return g;
 }
 
+// What a call is given, as text.
+static std::vector<std::string> texts_of(const Given &g) {
+    std::vector<std::string> out;
+    for (const Written &w : g.by_place) out.push_back(w.text);
+    for (const auto &[name, w] : g.by_name) out.push_back(name + ": " + w.text);
+    return out;
+}
+
 // `np.linspace(a, b, n)`, with or without its end.
 Written Writer::linspace(const Node &n) {
     if (n.parts.size() < 4 || n.parts.size() > 5) throw Unsure{};
@@ -268,6 +280,13 @@ Written Writer::linspace(const Node &n) {
     return {"[for i in 0.." + count + " { " + (first == "0" ? "" : first + " + ") + span +
                 " * i / " + steps + " }]",
             as_call, Kind::List};
+}
+
+bool is_mathematical(std::string_view name) {
+    constexpr std::array<std::string_view, 8> forms = {"linspace", "pow",     "hypot",    "array",
+                                                       "asarray",  "radians", "degToRad", "arange"};
+    return std::ranges::find(forms, name) != forms.end() ||
+           std::ranges::find(functions, name, &Renamed::theirs) != functions.end();
 }
 
 Written Writer::mathematics(const std::string &theirs, const Node &n) {
@@ -317,6 +336,13 @@ Written Writer::call(const Node &n) {
         const auto imported = imported_.find(callee.text);
         const std::string name = imported == imported_.end() ? callee.text : imported->second;
         if (const auto made = shape(name, n)) return *made;
+        constexpr std::array<std::string_view, 7> jscad_only = {
+            "hull",    "hullChain", "extrudeHelical", "extrudeRectangular",
+            "project", "expand",    "vectorText"};
+        const bool jscads =
+            of_ == Of::Jscad && std::ranges::find(jscad_only, name) != jscad_only.end();
+        if (jscads || (of_ == Of::Sdf && !is_mathematical(name)))
+            return unread_call(name, texts_of(given(n, 1)));
         return mathematics(name, n);
     }
     if (callee.is != Is::Member) throw Unsure{};
@@ -368,6 +394,8 @@ Written Writer::method(const Node &n) {
         made = sdf_change(callee.text, of, g);
     else
         made = script_change(callee.text, of, g);
+    if (!made && of_ == Of::Sdf && of.kind != Kind::Number && of.kind != Kind::Vector)
+        return unread_change(of, callee.text, texts_of(g));
     if (!made) throw Unsure{};
     if (g.asked.size() < g.by_place.size() + g.by_name.size()) throw Unsure{};
     return *made;

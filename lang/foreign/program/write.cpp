@@ -281,6 +281,14 @@ void Writer::imports(const Statement &s) {
         if (to.is != Is::Name) throw Unsure{};
         if (to.text != s.targets[0].names[i]) imported_[to.text] = s.targets[0].names[i];
     }
+    if (!sliders_.empty() && is_named(s.value, sliders_)) { // `const { radius } = params`
+        for (std::size_t i = 0; i < s.targets[0].names.size(); ++i) {
+            const auto of = slider_.find(s.targets[0].names[i]);
+            if (of == slider_.end()) throw Unsure{};
+            scopes_.back().names[s.targets[0].parts[i].text] = of->second;
+        }
+        return;
+    }
     const Node *from = &s.value;
     while (from->is == Is::Member) from = &from->parts[0];
     const bool library = is_named(*from, "jscad") || is_named(*from, "THREE") ||
@@ -330,9 +338,11 @@ bool Writer::function_of_points(const Statement &s) {
 
 void Writer::function(const Statement &s) {
     if (of_ == Of::Jscad && s.name == "main") { // the scene
-        if (!s.names.empty() || scopes_.size() != 1) throw Unsure{};
+        if (s.names.size() > 1 || scopes_.size() != 1) throw Unsure{};
+        if (!s.names.empty()) sliders_ = s.names[0];
         return block(s.body, true);
     }
+    if (of_ == Of::Jscad && s.name == defines_params) return; // written first
     if (!gathered_.empty()) throw Unsure{};
     const bool returns =
         std::ranges::any_of(s.body, [](const Statement &one) { return one.does == Does::Return; });
@@ -423,6 +433,8 @@ void Writer::show(const Node &n, bool top, bool last) {
 }
 
 std::string Writer::program(const std::vector<Statement> &statements) {
+    for (const Statement &s : statements)
+        if (of_ == Of::Jscad) jscad_params(s);
     block(statements, true);
     if (!shown_) {
         const Written *w = last_.empty() ? nullptr : find(last_);
