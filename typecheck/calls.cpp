@@ -1,4 +1,4 @@
-// Calls: their arguments, overloads of the library, builtins and closures (closures.h).
+// Calls: their arguments, builtins and closures (closures.h).
 #include "typecheck/closures.h"
 #include "typecheck/places.h"
 #include "typecheck/remedies.h"
@@ -60,8 +60,8 @@ static bool of_a_point(const lang::Parameter &p) {
            p.type->items[1].named == lang::TypeName::Float;
 }
 
-static Value call_closure(Interpreter &ev, const Value &callee, std::string_view name,
-                          std::span<const Argument> args, Span call, Span callee_span) {
+Value call_closure(Interpreter &ev, const Value &callee, std::string_view name,
+                   std::span<const Argument> args, Span call, Span callee_span) {
     const Closure c = ev.closures[callee.id];
     const lang::Function &f = c.ast->functions[c.function];
     const std::span<const Formal> formals = formals_of(ev, c);
@@ -159,35 +159,6 @@ static Value call_builtin(Interpreter &ev, const Value &callee, std::span<const 
     note_place(ev, v, call);
     return b.computes ? computed(ev, v, values, call, quoted(b.name))
                       : in_range(ev, v, values, call);
-}
-
-static Value call_overloads(Interpreter &ev, const Value &callee, std::string_view name,
-                            std::span<const Argument> args, Span call, Span callee_span) {
-    const std::vector<Value> candidates = ev.lists[callee.id];
-    for (const Value &candidate : candidates) {
-        const Closure &c = ev.closures[candidate.id];
-        const lang::Function &f = c.ast->functions[c.function];
-        ++ev.quiet;
-        auto bound = bind_arguments(ev, name, formals_of(ev, c), args, call, callee_span);
-        bool fits = bound.has_value();
-        for (std::size_t i = 0; fits && i < f.parameters.size(); ++i)
-            if ((*bound)[i].given && f.parameters[i].type)
-                fits = accepts(ev, (*bound)[i].value, *f.parameters[i].type);
-        --ev.quiet;
-        if (fits) return call_closure(ev, candidate, name, args, call, callee_span);
-    }
-    // none fits: the one whose first parameter does explains best
-    const Value *best = &candidates[0];
-    for (const Value &candidate : candidates) {
-        const Closure &c = ev.closures[candidate.id];
-        const lang::Function &f = c.ast->functions[c.function];
-        if (!args.empty() && !f.parameters.empty() && f.parameters[0].type &&
-            accepts(ev, args[0].value, *f.parameters[0].type)) {
-            best = &candidate;
-            break;
-        }
-    }
-    return call_closure(ev, *best, name, args, call, callee_span);
 }
 
 Value call_value(Interpreter &ev, const Value &callee, std::string_view name,

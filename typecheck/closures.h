@@ -17,6 +17,15 @@ Value run_closure(Interpreter &ev, const Value &callee, std::string_view name,
 std::optional<Value> specialized(Interpreter &ev, const Value &callee, std::string_view name,
                                  std::span<const Value> known, Span call);
 
+// A call of a closure: binds, converts and checks the arguments first (calls.cpp).
+Value call_closure(Interpreter &ev, const Value &callee, std::string_view name,
+                   std::span<const Argument> args, Span call, Span callee_span);
+
+// A call of a function of several forms: of the one that takes the arguments as they are, else of the
+// first that takes them (forms.cpp).
+Value call_overloads(Interpreter &ev, const Value &callee, std::string_view name,
+                     std::span<const Argument> args, Span call, Span callee_span);
+
 // Appends words that are the same for values that mean the same to a body.
 void key_of(Interpreter &ev, const Value &v, std::vector<std::uint64_t> &key);
 

@@ -85,7 +85,9 @@ void declare(Interpreter &ev, std::uint32_t frame, Symbol name, Value value, boo
                    fmt::format("`{}` is declared twice", ev.symbol_names[name]))
                 .label(f.bindings[it->second].declared, "first declared here")
                 .help(is_function(value)
-                          ? "a function has one form: give the other a name of its own"
+                          ? "forms of a function differ by the types of their parameters, all of "
+                            "which are "
+                            "written: `fn f(a: vec2)`; else give the other a name of its own"
                           : "give one of them another name");
             return;
         }

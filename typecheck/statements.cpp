@@ -470,31 +470,4 @@ std::optional<std::vector<Value>> sequence_items(Interpreter &ev, const Value &v
     return std::nullopt;
 }
 
-void hoist_functions(Interpreter &ev, const File &ast, lang::BlockId block, std::uint32_t frame) {
-    for (const lang::Stmt &s : ast.blocks[block].stmts)
-        if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind)) {
-            const lang::Function &fn = ast.functions[f->function];
-            if (!fn.name) continue;
-            Value closure = make_closure(ev, ast, f->function, frame);
-            bool library = ev.modules[ev.current_module].library;
-            // the library overloads by parameter type
-            const Symbol name = symbol_of(ast, *fn.name);
-            if (library && ev.frames[frame].index) {
-                Frame &fr = ev.frames[frame];
-                if (auto slot = slot_in_module(ev, frame, name)) {
-                    Value old = fr.bindings[*slot].value;
-                    std::vector<Value> all = old.kind == ValueKind::Overloads
-                                                 ? ev.lists[old.id]
-                                                 : std::vector<Value>{old};
-                    all.push_back(closure);
-                    Value overloads =
-                        make_value(ValueKind::Overloads, list_value(ev, std::move(all)).id);
-                    ev.frames[frame].bindings[*slot].value = overloads;
-                    continue;
-                }
-            }
-            declare(ev, frame, name, closure, false, fn.name->span);
-        }
-}
-
 } // namespace fathom::typecheck

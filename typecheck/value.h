@@ -28,7 +28,7 @@ enum class ValueKind : std::uint8_t {
     Range,       // whole numbers num[0], num[0] + num[2], … below num[1]
     Closure,     // id: closures
     Builtin,     // id: the builtin table
-    Overloads,   // id: lists, of closures of the library with one name
+    Overloads,   // id: lists, of closures with one name
     ConstField,  // id: lists, of one value: the function that always gives it
     CachedField, // id: graph caches
     ImageField,  // id: scene images; num[0] the scale

@@ -22,6 +22,18 @@ std::optional<Target> exported(Workspace &workspace, const std::string &path,
     return std::nullopt;
 }
 
+// Forms of one function are one declaration, the first, for whoever looks for it or renames it.
+bool is_form_of(const Declaration &a, const Declaration &b) {
+    return a.by == DeclaredBy::Function && b.by == DeclaredBy::Function && a.top_level &&
+           b.top_level && a.name == b.name;
+}
+
+std::size_t first_form(const Names &names, std::size_t declared) {
+    for (std::size_t i = 0; i < declared; ++i)
+        if (is_form_of(names.declarations[i], names.declarations[declared])) return i;
+    return declared;
+}
+
 // The parameter that a call names, of a function of whatever file.
 std::optional<Target> parameter_target(Workspace &workspace, const File &file, const Use &use) {
     if (!use.callee) return std::nullopt;
@@ -53,7 +65,7 @@ std::optional<Target> target_of(Workspace &workspace, const File &file, const Us
 
 std::optional<Target> target_at(Workspace &workspace, const File &file, std::size_t offset) {
     if (auto declared = file.reading->names.declaration_at(offset))
-        return Target{file.path, *declared};
+        return Target{file.path, first_form(file.reading->names, *declared)};
     const Use *use = file.reading->names.use_at(offset);
     return use ? target_of(workspace, file, *use) : std::nullopt;
 }
@@ -65,6 +77,9 @@ std::vector<Mention> mentions_of(Workspace &workspace, const Target &target,
     if (!home) return all;
     const Declaration &meant = home->reading->names.declarations[target.declaration];
     all.push_back({target.path, meant.at, true, true, false});
+    for (const Declaration &other : home->reading->names.declarations)
+        if (&other != &meant && is_form_of(other, meant))
+            all.push_back({target.path, other.at, true, true, false});
     const bool local = !meant.top_level && meant.by != DeclaredBy::Parameter;
     for (const File &file : files) {
         if (local && file.path != target.path) continue;

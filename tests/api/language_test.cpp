@@ -61,6 +61,20 @@ TEST_CASE("a half-typed text is known as far as it goes") {
     CHECK(workspace.signature_help("a.sdf", 0).value.forms.empty());
 }
 
+TEST_CASE("forms of a function are found and renamed together") {
+    Workspace workspace;
+    const std::string text = "fn f(a: float) = a\nfn f(a: vec2) = a.x\nsphere(f(1) + f([1, 2]))\n";
+    workspace.set_text("/none/a.sdf", text);
+    REQUIRE(workspace.diagnostics("/none/a.sdf").value.empty());
+    for (const std::size_t at : {text.find("f("), text.find("f(a: vec2"), text.find("f([")}) {
+        CHECK(workspace.references("/none/a.sdf", at).value.size() == 4);
+        const auto changes = workspace.rename("/none/a.sdf", at, "g");
+        REQUIRE(changes);
+        CHECK(edited(text, changes.value.at("/none/a.sdf")) ==
+              "fn g(a: float) = a\nfn g(a: vec2) = a.x\nsphere(g(1) + g([1, 2]))\n");
+    }
+}
+
 TEST_CASE("names go through the texts that import each other") {
     Workspace workspace;
     const std::string part = "fn knob(radius) = sphere(radius)\n",

@@ -1,0 +1,144 @@
+// Functions of several forms, which differ by the types of their parameters, as GLSL has `noise` of a
+// vec2 and of a vec3: how they are declared, and which one a call means.
+#include "typecheck/binding.h"
+#include "typecheck/closures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace fathom::typecheck {
+
+namespace {
+
+bool same_type(const lang::TypeExpr &a, const lang::TypeExpr &b) {
+    return a.kind == b.kind && a.named == b.named &&
+           std::ranges::equal(a.items, b.items, same_type);
+}
+
+// Whether each call fits one of the two: a parameter has another type, or their number is another.
+bool told_apart(const lang::Function &a, const lang::Function &b) {
+    const auto typed = [](const lang::Function &f) {
+        return std::ranges::all_of(f.parameters, [](const lang::Parameter &p) {
+            return p.type != nullptr && p.type->named != lang::TypeName::Unknown;
+        });
+    };
+    const auto needed = [](const lang::Function &f) {
+        return static_cast<std::size_t>(std::ranges::count_if(
+            f.parameters, [](const lang::Parameter &p) { return !p.default_value; }));
+    };
+    if (!typed(a) || !typed(b)) return false;
+    if (a.parameters.size() < needed(b) || b.parameters.size() < needed(a)) return true;
+    const std::size_t both = std::min(needed(a), needed(b));
+    for (std::size_t i = 0; i < both; ++i)
+        if (!same_type(*a.parameters[i].type, *b.parameters[i].type)) return true;
+    return false;
+}
+
+const lang::Function &function_of(const Interpreter &ev, const Value &closure) {
+    const Closure &c = ev.closures[closure.id];
+    return c.ast->functions[c.function];
+}
+
+// The forms that the name has, and this one; nothing where they are not told apart.
+std::optional<std::vector<Value>> with_form(Interpreter &ev, const Value &old, const Value &form) {
+    std::vector<Value> all;
+    if (old.kind == ValueKind::Overloads)
+        all = ev.lists[old.id];
+    else if (old.kind == ValueKind::Closure)
+        all = {old};
+    else
+        return std::nullopt;
+    const bool library = ev.modules[ev.current_module].library; // whose order tells
+    for (const Value &other : all)
+        if (!library && !told_apart(function_of(ev, other), function_of(ev, form)))
+            return std::nullopt;
+    all.push_back(form);
+    return all;
+}
+
+// Whether an argument is of the parameter's type as it is: a number fills no vector.
+bool takes_as_is(const Interpreter &ev, const Value &v, const lang::TypeExpr &type) {
+    using lang::TypeName;
+    if (type.kind != lang::TypeExpr::Kind::Name || !is_numeric(v)) return true;
+    switch (numeric_type(ev, v)) {
+    case ir::Type::Int: return type.named == TypeName::Int || type.named == TypeName::Float;
+    case ir::Type::Float: return type.named == TypeName::Float;
+    case ir::Type::Vec2: return type.named == TypeName::Vec2;
+    case ir::Type::Vec3: return type.named == TypeName::Vec3 || type.named == TypeName::Color;
+    case ir::Type::Vec4: return type.named == TypeName::Vec4;
+    case ir::Type::Bool:
+    case ir::Type::Mat2:
+    case ir::Type::Mat3:
+    case ir::Type::Mat4:
+    case ir::Type::Hit: return true;
+    }
+    return true;
+}
+
+} // namespace
+
+void hoist_functions(Interpreter &ev, const File &ast, lang::BlockId block, std::uint32_t frame) {
+    for (const lang::Stmt &s : ast.blocks[block].stmts)
+        if (auto *f = std::get_if<lang::FunctionDecl>(&s.kind)) {
+            const lang::Function &fn = ast.functions[f->function];
+            if (!fn.name) continue;
+            const Value closure = make_closure(ev, ast, f->function, frame);
+            const Symbol name = symbol_of(ast, *fn.name);
+            if (ev.frames[frame].index)
+                if (const auto slot = slot_in_module(ev, frame, name)) {
+                    const Value old = ev.frames[frame].bindings[*slot].value;
+                    if (auto all = with_form(ev, old, closure)) {
+                        const Value list = list_value(ev, std::move(*all));
+                        ev.frames[frame].bindings[*slot].value =
+                            make_value(ValueKind::Overloads, list.id);
+                        continue;
+                    }
+                }
+            declare(ev, frame, name, closure, false, fn.name->span);
+        }
+}
+
+Value call_overloads(Interpreter &ev, const Value &callee, std::string_view name,
+                     std::span<const Argument> args, Span call, Span callee_span) {
+    const std::vector<Value> candidates = ev.lists[callee.id];
+    const Value *first = nullptr;
+    bool several = false; // a number may fill vectors of several lengths
+    for (const Value &candidate : candidates) {
+        const Closure &c = ev.closures[candidate.id];
+        const lang::Function &f = c.ast->functions[c.function];
+        ++ev.quiet;
+        auto bound = bind_arguments(ev, name, formals_of(ev, c), args, call, callee_span);
+        bool fits = bound.has_value(), exact = fits;
+        for (std::size_t i = 0; fits && i < f.parameters.size(); ++i)
+            if ((*bound)[i].given && f.parameters[i].type) {
+                fits = accepts(ev, (*bound)[i].value, *f.parameters[i].type);
+                exact = exact &&
+                        (c.library || takes_as_is(ev, (*bound)[i].value, *f.parameters[i].type));
+            }
+        --ev.quiet;
+        if (fits && exact) return call_closure(ev, candidate, name, args, call, callee_span);
+        several = several || (fits && first && !c.library);
+        if (fits && !first) first = &candidate;
+    }
+    if (several) {
+        report(ev, Code::TypeMismatch, call, fmt::format("several forms of `{}` take this", name))
+            .help("give it the numbers that the form wants: `vec2(1)`, `vec3(1)`");
+        return poison();
+    }
+    if (first) return call_closure(ev, *first, name, args, call, callee_span);
+    // none fits: the one whose first parameter does explains best
+    const Value *best = &candidates[0];
+    for (const Value &candidate : candidates) {
+        const Closure &c = ev.closures[candidate.id];
+        const lang::Function &f = c.ast->functions[c.function];
+        if (!args.empty() && !f.parameters.empty() && f.parameters[0].type &&
+            accepts(ev, args[0].value, *f.parameters[0].type)) {
+            best = &candidate;
+            break;
+        }
+    }
+    return call_closure(ev, *best, name, args, call, callee_span);
+}
+
+} // namespace fathom::typecheck
