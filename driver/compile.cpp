@@ -3,6 +3,7 @@
 #include "driver/edit.h"
 #include "driver/framing.h"
 #include "driver/scene_files.h"
+#include "driver/text_fixes.h"
 #include "driver/unproved_ranges.h"
 #include "ir/lower/lower.h"
 #include "ir/passes/early_exit.h"
@@ -172,6 +173,7 @@ void run_phases(Compilation &out, const Text &text, const CompileOptions &option
                                       ? std::max(options.times->first, out.scene.render.time_end)
                                       : options.times->second);
     effort.work -= proof::prove(out.scene, out.diagnostics, proof_options);
+    if (!out.good()) add_text_fixes(out.sources, out.diagnostics);
     out.proof_steps = options.limits.proof - effort.work;
     if (effort.stop.now()) return cancel(out);
     if (out.good()) {

@@ -71,6 +71,10 @@ std::optional<Field> may_be_field(const File &ast, const lang::Function &f) {
         field.distance = ".x";
         return field;
     }
+    if (type == lang::TypeName::Vec4 && part.empty() && lang::names_a_scene(f.name->text)) {
+        field.distance = ".x"; // and what else there is has no one meaning
+        return field;
+    }
     if (type != lang::TypeName::Vec4 || part.empty()) return std::nullopt;
     field.distance = "." + std::string(part);
     field.color = part == "x" ? ".yzw" : ".xyz";
