@@ -9,7 +9,9 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <glm/gtc/constants.hpp>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace fathom::driver {
@@ -118,6 +120,47 @@ void stand_outside(ir::Scene &scene, double time) {
     scene.framed = outside.value_or(ir::Box{});
 }
 
+// How high a ground is that has no end, by columns far from the origin: the lowest and the highest place
+// that they meet from above. None where a column meets nothing, or begins in the solid.
+std::optional<ir::Interval> ground_of(Depth &depth) {
+    constexpr int columns = 48, most_steps = 300;
+    constexpr double nearest = 64, highest = 2048, near = 1e-3, golden = 0.61803398874989485;
+    ir::Interval heights(highest, -highest);
+    for (int k = 0; k < columns; ++k) {
+        const double far = nearest * std::exp2(k % 4), turn = 2 * glm::pi<double>() * golden * k;
+        double y = highest, free = 0;
+        for (int step = 0; step < most_steps && y > -highest; ++step, y -= free) {
+            free = -depth({far * std::cos(turn), y, far * std::sin(turn)});
+            if (free < near) break;
+        }
+        if (free >= near || y >= highest) return std::nullopt;
+        heights = ir::Interval(std::min(heights.lo, y), std::max(heights.hi, y));
+    }
+    return heights;
+}
+
+// What stands on or over such a ground, where that has an end: as `min(p.y, …)` of a field of one's
+// own, whose parts nobody knows.
+ir::Box above_ground(const ir::Scene &scene, double time, double &work) {
+    if (!Depth::affordable(scene)) return {};
+    Depth depth(scene, time);
+    const std::optional<ir::Interval> ground = ground_of(depth);
+    if (!ground) return {};
+    // Columns do not meet the highest hill.
+    const double floor = ground->hi + std::max(0.02, 0.25 * (ground->hi - ground->lo));
+    for (const double half : {64.0, cpu::endless_from}) { // near the origin it is found sooner
+        ir::Box domain{{-half, floor, -half}, {half, half, half}};
+        for (int turn = 0; turn < 2 && !domain.empty(); ++turn) // the finer the smaller
+            domain = cpu::solid_box(scene, scene.distance, domain, time, work);
+        bool ends = !domain.empty() && work > 0;
+        for (std::size_t i = 0; i < 3; ++i)
+            ends = ends && domain.lo[i] > -0.75 * half && domain.hi[i] < 0.75 * half;
+        domain.lo[1] = std::min(domain.lo[1], ground->hi);
+        if (ends) return domain;
+    }
+    return {};
+}
+
 // The extent of the parts that have bounds: first that of the outermost, which mostly holds the bounds
 // of all others; then of more of those that it does not.
 cpu::Extent of_bounded(ir::Scene &scene, ir::Interval times, double &work) {
@@ -193,6 +236,10 @@ void find_framing(ir::Scene &scene, ir::Interval times, const std::optional<ir::
     if (!found.box.empty()) scene.framed_reach = std::move(found.reach);
     if (!scene.framed.empty() || work <= 0) return; // what was not found may be there
     const Span span = scene.top_level.front().span;
+    if (endless && !section) {
+        scene.framed = above_ground(scene, times.lo, work);
+        if (!scene.framed.empty()) return;
+    }
     if (endless) stand_outside(scene, times.lo);
     if (endless)
         diagnostics

@@ -16,8 +16,9 @@ Span part(Span of, std::size_t begin, std::size_t end) {
 
 // The radii of the text's ellipsoid, from `k1 = length(p / (r * r))` before its distance.
 std::string radii_before(std::string_view text, const std::string &k1) {
-    const std::regex squared("\\b" + k1 +
-                             R"(\s*(?::\s*float\s*)?=\s*length\(\s*\w+\s*/\s*\(\s*(\w+)\s*\*\s*\1\s*\)\s*\))");
+    const std::regex squared(
+        "\\b" + k1 +
+        R"(\s*(?::\s*float\s*)?=\s*length\(\s*\w+\s*/\s*\(\s*(\w+)\s*\*\s*\1\s*\)\s*\))");
     std::string radii;
     for (std::regex_iterator at(text.begin(), text.end(), squared), none = decltype(at){};
          at != none; ++at)
@@ -31,17 +32,27 @@ std::vector<Edit> ellipsoid_edits(std::string_view text, Span place) {
     constexpr std::size_t longest = 200, near = 1000; // so much is looked at, whatever is written
     const std::string_view written = text.substr(place.begin, place.end - place.begin);
     Match found;
-    if (written.size() > longest || !std::regex_match(written.begin(), written.end(), found, distance) || found[1] != found[2])
+    if (written.size() > longest ||
+        !std::regex_match(written.begin(), written.end(), found, distance) || found[1] != found[2])
         return {};
     const std::size_t begin = place.begin > near ? place.begin - near : 0;
-    const std::string radii =
-        radii_before(text.substr(begin, place.begin - begin), found[3].str());
+    const std::string radii = radii_before(text.substr(begin, place.begin - begin), found[3].str());
     if (radii.empty()) return {};
     const std::string k0 = found[1].str();
-    return {{part(place, place.begin, place.begin),
-             "if " + k0 + " < 1 { (" + k0 + " - 1) * min(" + radii + ".x, min(" + radii + ".y, " +
-                 radii + ".z)) } else { "},
+    return {{part(place, place.begin, place.begin), "if " + k0 + " < 1 { (" + k0 + " - 1) * min(" +
+                                                        radii + ".x, min(" + radii + ".y, " +
+                                                        radii + ".z)) } else { "},
             {part(place, place.end, place.end), " }"}};
+}
+
+// The stretch, with its line where nothing else stands there.
+Span with_line(std::string_view text, Span stretch) {
+    std::size_t begin = stretch.begin, end = stretch.end;
+    while (begin > 0 && (text[begin - 1] == ' ' || text[begin - 1] == '\t')) --begin;
+    while (end < text.size() && (text[end] == ' ' || text[end] == '\t')) ++end;
+    const bool alone =
+        (begin == 0 || text[begin - 1] == '\n') && (end < text.size() && text[end] == '\n');
+    return alone ? part(stretch, begin, end + 1) : stretch;
 }
 
 // `if c { … }` without its head and its braces, where no `else` follows; `place` is the condition.
@@ -51,7 +62,8 @@ std::vector<Edit> without_if(std::string_view text, Span place) {
     --head;
     const std::size_t open = text.find('{', place.end);
     if (open == std::string_view::npos ||
-        text.substr(place.end, open - place.end).find_first_not_of(" )\n") != std::string_view::npos)
+        text.substr(place.end, open - place.end).find_first_not_of(" )\n") !=
+            std::string_view::npos)
         return {};
     std::size_t close = open;
     for (int depth = 0; close < text.size(); ++close) {
@@ -61,7 +73,8 @@ std::vector<Edit> without_if(std::string_view text, Span place) {
     if (close == text.size()) return {};
     const std::size_t behind = text.find_first_not_of(" \n", close + 1);
     if (behind != std::string_view::npos && text.substr(behind, 4) == "else") return {};
-    return {{part(place, head, open + 1), ""}, {part(place, close, close + 1), ""}};
+    return {{with_line(text, part(place, head, open + 1)), ""},
+            {with_line(text, part(place, close, close + 1)), ""}};
 }
 
 std::vector<Edit> region_edits(std::string_view text, const Diagnostic &d) {
@@ -78,9 +91,8 @@ std::vector<Edit> region_edits(std::string_view text, const Diagnostic &d) {
 
 void add_text_fixes(const Sources &sources, Diagnostics &diagnostics) {
     for (const Diagnostic &told : std::vector(diagnostics.items())) {
-        const bool of_proof =
-            told.code == Code::FieldSingular || told.code == Code::FieldJump ||
-            told.code == Code::LipschitzUnbounded;
+        const bool of_proof = told.code == Code::FieldSingular || told.code == Code::FieldJump ||
+                              told.code == Code::LipschitzUnbounded;
         if (!of_proof || !told.fix || !told.fix->edits.empty() || !told.primary.span.source)
             continue;
         const std::string_view text = sources[told.primary.span.source].text;
@@ -90,9 +102,11 @@ void add_text_fixes(const Sources &sources, Diagnostics &diagnostics) {
             edits = ellipsoid_edits(text, told.primary.span);
         else if (way.starts_with("leave the `if` out"))
             edits = without_if(text, told.primary.span);
-        else if (way.starts_with("give it a region"))
+        else if (way.starts_with("give it a region") &&
+                 told.message.find("grows steeper") != std::string::npos)
             edits = region_edits(text, told);
-        if (Diagnostic *d = edits.empty() ? nullptr : diagnostics.find(told.code, told.primary.span))
+        if (Diagnostic *d =
+                edits.empty() ? nullptr : diagnostics.find(told.code, told.primary.span))
             d->fix->edits = std::move(edits);
     }
 }

@@ -199,6 +199,34 @@ TEST_CASE("what moves is framed at the moment of a still, and over the frames of
     CHECK(at(ball, 6, 6).lo[0] == Approx(5.5).margin(0.1));
 }
 
+TEST_CASE("what stands on the ground of one's own field is framed") {
+    const auto framed = [](const std::string &ground, const std::string &part) {
+        const auto c =
+            compiled("implicit(p => min(" + ground + ", " + part + "), within: everywhere)\n");
+        REQUIRE(c.good());
+        CHECK(c.diagnostics.items().empty());
+        return c.scene.framed;
+    };
+    const ir::Box ball = framed("p.y", "length(p - vec3(9, 1, -6)) - 1");
+    const std::array<double, 3> lo{8, 0, -7}, hi{10, 2, -5};
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(ball.lo[i] == Approx(lo[i]).margin(0.1));
+        CHECK(ball.hi[i] == Approx(hi[i]).margin(0.1));
+    }
+    const ir::Box above = framed("p.y - 0.2*sin(p.x)*sin(p.z) + 3", "length(p - X) - 1");
+    CHECK(above.lo[1] < -2.8);
+    CHECK(above.hi[1] == Approx(1).margin(0.1));
+    // a row of balls without an end, walls, and hills alone have nothing of the kind
+    for (const std::string field :
+         {"min(p.y, length(vec3(p.x - 4*round(p.x/4), p.y - 1, p.z)) - 1)", "abs(p.x) - 0.1",
+          "p.y - 0.3*sin(p.x) - 0.3*sin(p.z)"}) {
+        const auto c = compiled("implicit(p => " + field + ", within: everywhere)\n");
+        REQUIRE(c.good());
+        REQUIRE(c.diagnostics.items().size() == 1);
+        CHECK(code_name(c.diagnostics.items()[0].code) == "nothing-framed");
+    }
+}
+
 TEST_CASE("what has no end is seen from outside") {
     const auto begins = [](const std::string &text) {
         const driver::Compilation made = framed(text);
