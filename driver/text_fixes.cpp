@@ -87,6 +87,24 @@ std::vector<Edit> region_edits(std::string_view text, const Diagnostic &d) {
     return {{part(place, begin, begin + endless.size()), "ball(3)"}};
 }
 
+// `implicit(DE, within: everywhere)` with `estimate: 1`: distances to fractals have names of their own.
+std::vector<Edit> estimate_edits(std::string_view text, const Diagnostic &d) {
+    static const std::regex shape(R"(implicit\((\w+), within: (everywhere|ball\([\w.]+\))\))");
+    static const std::regex estimates(
+        R"(de|distance_?estimat\w*|\w*(bulb|mandel|julia|fractal)\w*)", std::regex::icase);
+    constexpr std::uint32_t longest = 200;
+    const Span place = d.related.empty() ? d.primary.span : d.related.back().span;
+    if (place.end - place.begin > longest) return {};
+    const std::string written(text.substr(place.begin, place.end - place.begin));
+    std::smatch found;
+    if (!std::regex_match(written, found, shape) || !std::regex_match(found[1].str(), estimates))
+        return {};
+    const std::string region = found[2].str() == "everywhere" ? "ball(3)" : found[2].str();
+    const std::size_t at = place.begin + static_cast<std::size_t>(found.position(2));
+    return {{part(place, at, at + static_cast<std::size_t>(found.length(2))),
+             region + ", estimate: 1"}};
+}
+
 } // namespace
 
 void add_text_fixes(const Sources &sources, Diagnostics &diagnostics) {
@@ -97,17 +115,21 @@ void add_text_fixes(const Sources &sources, Diagnostics &diagnostics) {
             continue;
         const std::string_view text = sources[told.primary.span.source].text;
         const std::string_view way = told.fix->message;
-        std::vector<Edit> edits;
-        if (way.starts_with("give its inside apart"))
+        std::vector<Edit> edits = estimate_edits(text, told);
+        const bool estimates = !edits.empty();
+        if (estimates)
+            diagnostics.find(told.code, told.primary.span)->fix->message =
+                "state a fractal's estimate of the distance as one, `estimate: 1`, which is not "
+                "tested, or a bound with `lipschitz:`, which is";
+        else if (way.starts_with("give its inside apart"))
             edits = ellipsoid_edits(text, told.primary.span);
         else if (way.starts_with("leave the `if` out"))
             edits = without_if(text, told.primary.span);
         else if (way.starts_with("give it a region") &&
                  told.message.find("grows steeper") != std::string::npos)
             edits = region_edits(text, told);
-        if (Diagnostic *d =
-                edits.empty() ? nullptr : diagnostics.find(told.code, told.primary.span))
-            d->fix->edits = std::move(edits);
+        if (!edits.empty())
+            diagnostics.find(told.code, told.primary.span)->fix->edits = std::move(edits);
     }
 }
 

@@ -326,7 +326,9 @@ void Prover::report_field(ShapeId id, const FieldBound &b, const std::string &wh
             d->note(jumps ? cause + " jumps, and that both sides meet is not seen"
                           : "no bound on its slope holds for all points" +
                                 (b.cause ? "; far from the origin " + cause + " has none" : ""))
-                .help((has_region ? "give it a region, as in `within: ball(3)`, "
+                .help((jumps && b.cause && told_of[*b.cause] ? way_to_meet(b.cause, false, false)
+                                                             : std::string()) +
+                      (has_region ? "give it a region, as in `within: ball(3)`, "
                                   : "write `.within(…)` after it, as in `.within(ball(3))`, ") +
                       assume);
         return;

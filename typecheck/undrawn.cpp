@@ -97,6 +97,10 @@ bool gives_distance(Interpreter &ev, const File &ast, std::uint32_t frame, Field
     ev.quiet_errors = errors;
     --ev.quiet, --ev.in_field;
     if (failed) return false;
+    if (is_numeric(value) && ir::is_vector(numeric_type(ev, value))) { // `[distance, number]`
+        field.distance = "[0]";
+        return !is_flat_field(f) && lang::names_a_scene(f.name->text);
+    }
     if (value.kind != ValueKind::List) return f.parameters[0].type && is_scalar(ev, value);
     for (std::size_t i = 0; i < ev.lists[value.id].size(); ++i) {
         const Value item = ev.lists[value.id][i];

@@ -224,10 +224,21 @@ void ForeignSyntax::foreign_unbound(Index first, Index name, std::string_view ty
         typed = declared + (type.empty() ? "" : ": ") + std::string(type);
     const bool later = is_assigned_after(name);
     const std::string_view zero = zero_of(type);
+    const std::string record = in_function_ ? zero_record(type) : std::string();
+    const auto mentioned = [&] {
+        for (Index i = name + 1; i < tokens_.tokens.size(); ++i)
+            if (kind(i) == Tok::Name && text(i) == declared) return true;
+        return false;
+    };
     Diagnostic &d = foreign(span(first, name), "a name is bound together with its value");
     if (!in_function_ && later) // there the first assignment is the declaration
         d.help("leave it away: `let " + declared + " = …` declares it where it has its value",
                {without_statement(first)});
+    else if (!in_function_ && may_look_far() && !mentioned())
+        d.help("leave it away: nothing uses it", {without_statement(first)});
+    else if (!record.empty())
+        d.help(to_write("var " + declared + " = " + record),
+               {{span(first, name), "var " + declared + " = " + record}});
     else if (in_function_ && !zero.empty())
         d.help(to_write("var " + typed + " = " + std::string(zero)),
                {{span(first, name), "var " + typed + " = " + std::string(zero)}});

@@ -83,6 +83,7 @@ class ForeignWords : protected WordReading {
     Faces faces_of(Span assignment) const;
     bool told_before(std::uint32_t begin, std::uint32_t end, const std::vector<Edit> &edits);
     bool mark_of_wgsl(std::uint32_t begin, std::uint32_t end);
+    std::vector<Edit> chosen_lines(std::uint32_t begin) const;
 
     struct ToldName {
         Span first;
@@ -272,6 +273,9 @@ class ForeignSyntax : protected TokenReading {
 
     // Records of theirs (records.cpp).
     bool foreign_struct(Index first);
+    std::string zero_record(std::string_view type) const;
+    bool switch_choice(Index first);
+    bool do_loop(Index first);
     bool named_record(Index brace);
     bool called_record(Index made);
     bool parameters_in_braces(Index brace);

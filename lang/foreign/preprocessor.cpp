@@ -12,6 +12,10 @@ namespace {
 constexpr std::array<std::string_view, 6> needless = {"version", "extension", "pragma",
                                                       "line",    "undef",     "precision"};
 
+bool is_word(std::string_view text) {
+    return !text.empty() && std::ranges::all_of(text, is_word_char) && !is_digit(text[0]);
+}
+
 } // namespace
 
 // `#define N 3` is read as `let N = 3`, `#define F(x) …` as `fn F(x) = …`: the end of what stands
@@ -83,7 +87,8 @@ void ForeignWords::directive(std::uint32_t begin, std::uint32_t end, std::uint32
     if (begins) {
         ++open_choices_;
         d.help("what is left away and what is not, is chosen by `if`: "
-               "`let fancy = true`, and then `if fancy { … } else { … }`");
+               "`let fancy = true`, and then `if fancy { … } else { … }`",
+               chosen_lines(begin));
     } else if (word == "include" && rest.starts_with('"') && quote != rest.npos) {
         const std::string import = "import " + std::string(rest.substr(0, quote + 1));
         d.help("write `" + import + "`", {{span(begin, line_end), import}});
@@ -91,6 +96,9 @@ void ForeignWords::directive(std::uint32_t begin, std::uint32_t end, std::uint32
         d.help("the library needs no import: leave the line away", {{span(begin, line_end), ""}});
     } else if (word == "include" || word == "import") {
         d.help("another file is brought in by `import \"file.sdf\"`");
+    } else if (word == "define" && is_word(rest)) {
+        d.help("write `let " + std::string(rest) + " = true`",
+               {{span(begin, line_end), "let " + std::string(rest) + " = true"}});
     } else if (word == "define") {
         d.help("a value is bound by `let name = …`, a function by `fn name(x) = …`");
     } else if (std::find(needless.begin(), needless.end(), word) != needless.end()) {

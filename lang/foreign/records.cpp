@@ -27,7 +27,9 @@ bool ForeignSyntax::foreign_struct(Index first) {
     std::vector<std::string_view> fields;
     for (Index i = open + 1; i < close; ++i) {
         const bool rust = kind(i) == Tok::Name && kind(i + 1) == Tok::Colon;
-        const bool c = kind(i) == Tok::Name && i > open + 1 && kind(i - 1) == Tok::Name &&
+        const bool further = kind(i - 1) == Tok::Comma && !fields.empty(); // `vec3 o, d;`
+        const bool c = kind(i) == Tok::Name && i > open + 1 &&
+                       (kind(i - 1) == Tok::Name || further) &&
                        is_one_of(kind(i + 1), {Tok::End, Tok::Comma, Tok::BraceClose});
         if (rust || c) fields.push_back(text(i));
         if (match(i) > i) i = match(i);
