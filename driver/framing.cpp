@@ -122,7 +122,7 @@ void stand_outside(ir::Scene &scene, double time) {
 
 // How high a ground is that has no end, by columns far from the origin: the lowest and the highest place
 // that they meet from above. None where a column meets nothing, or begins in the solid.
-std::optional<ir::Interval> ground_of(Depth &depth) {
+std::optional<ir::Interval> ground_of(Depth &depth, double operations, double &work) {
     constexpr int columns = 48, most_steps = 300;
     constexpr double nearest = 64, highest = 2048, near = 1e-3, golden = 0.61803398874989485;
     ir::Interval heights(highest, -highest);
@@ -130,6 +130,7 @@ std::optional<ir::Interval> ground_of(Depth &depth) {
         const double far = nearest * std::exp2(k % 4), turn = 2 * glm::pi<double>() * golden * k;
         double y = highest, free = 0;
         for (int step = 0; step < most_steps && y > -highest; ++step, y -= free) {
+            if ((work -= operations) <= 0) return std::nullopt;
             free = -depth({far * std::cos(turn), y, far * std::sin(turn)});
             if (free < near) break;
         }
@@ -144,7 +145,9 @@ std::optional<ir::Interval> ground_of(Depth &depth) {
 ir::Box above_ground(const ir::Scene &scene, double time, double &work) {
     if (!Depth::affordable(scene)) return {};
     Depth depth(scene, time);
-    const std::optional<ir::Interval> ground = ground_of(depth);
+    const ir::Graph &graph = scene.graph;
+    const double operations = ir::operations(graph, graph.function(scene.distance).result);
+    const std::optional<ir::Interval> ground = ground_of(depth, operations, work);
     if (!ground) return {};
     // Columns do not meet the highest hill.
     const double floor = ground->hi + std::max(0.02, 0.25 * (ground->hi - ground->lo));
@@ -237,7 +240,8 @@ void find_framing(ir::Scene &scene, ir::Interval times, const std::optional<ir::
     if (!scene.framed.empty() || work <= 0) return; // what was not found may be there
     const Span span = scene.top_level.front().span;
     if (endless && !section) {
-        scene.framed = above_ground(scene, times.lo, work);
+        for (const double time : moments_of(scene, scene.distance, times))
+            scene.framed = ir::hull(scene.framed, above_ground(scene, time, work));
         if (!scene.framed.empty()) return;
     }
     if (endless) stand_outside(scene, times.lo);

@@ -49,6 +49,8 @@ std::optional<std::vector<Value>> with_form(Interpreter &ev, const Value &old, c
         all = {old};
     else
         return std::nullopt;
+    constexpr std::size_t most_forms = 32; // each call tries them all
+    if (all.size() >= most_forms) return std::nullopt;
     const bool library = ev.modules[ev.current_module].library; // whose order tells
     for (const Value &other : all)
         if (!library && !told_apart(function_of(ev, other), function_of(ev, form)))

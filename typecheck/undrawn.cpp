@@ -56,28 +56,27 @@ int rank_of(const File &ast, const std::vector<Field> &fields, const lang::Funct
 }
 
 // By what is written of it: whether it may be a field, with the part that is its distance.
-std::optional<Field> may_be_field(const File &ast, const lang::Function &f) {
+std::optional<Field> may_be_field(const lang::Function &f, std::string_view compared) {
     if (f.parameters.size() != 1 || f.parameters[0].default_value) return std::nullopt;
     const lang::TypeExpr *point = f.parameters[0].type;
     if (point && point->named != lang::TypeName::Vec3 && point->named != lang::TypeName::Vec2)
         return std::nullopt;
     Field field{&f, 0, {}, {}};
     if (!f.result) return field; // its value tells
-    const std::string_view part = compared_part(ast);
     const lang::TypeName type = f.result->named;
     if (type == lang::TypeName::Float) return point ? std::optional(field) : std::nullopt;
     if (is_flat_field(f)) return std::nullopt;
-    if (type == lang::TypeName::Vec2 && (part == "x" || lang::names_a_scene(f.name->text))) {
+    if (type == lang::TypeName::Vec2 && (compared == "x" || lang::names_a_scene(f.name->text))) {
         field.distance = ".x";
         return field;
     }
-    if (type == lang::TypeName::Vec4 && part.empty() && lang::names_a_scene(f.name->text)) {
+    if (type == lang::TypeName::Vec4 && compared.empty() && lang::names_a_scene(f.name->text)) {
         field.distance = ".x"; // and what else there is has no one meaning
         return field;
     }
-    if (type != lang::TypeName::Vec4 || part.empty()) return std::nullopt;
-    field.distance = "." + std::string(part);
-    field.color = part == "x" ? ".yzw" : ".xyz";
+    if (type != lang::TypeName::Vec4 || compared.empty()) return std::nullopt;
+    field.distance = "." + std::string(compared);
+    field.color = compared == "x" ? ".yzw" : ".xyz";
     return field;
 }
 
@@ -114,12 +113,14 @@ bool gives_distance(Interpreter &ev, const File &ast, std::uint32_t frame, Field
 
 // The file's field that most looks like its scene; the last one of several.
 std::optional<Field> field_of(Interpreter &ev, const File &ast, std::uint32_t frame) {
-    constexpr std::size_t most_tried = 4;
+    constexpr std::size_t most_tried = 4, most_fields = 32; // the last ones of a long file
+    const std::string_view compared = compared_part(ast);
     std::vector<Field> fields;
-    for (const lang::Stmt &s : ast.blocks[ast.root].stmts)
-        if (const auto *declared = std::get_if<lang::FunctionDecl>(&s.kind))
-            if (auto field = may_be_field(ast, ast.functions[declared->function]))
-                fields.insert(fields.begin(), std::move(*field));
+    const std::vector<lang::Stmt> &stmts = ast.blocks[ast.root].stmts;
+    for (std::size_t i = stmts.size(); i-- > 0 && fields.size() < most_fields;)
+        if (const auto *declared = std::get_if<lang::FunctionDecl>(&stmts[i].kind))
+            if (auto field = may_be_field(ast.functions[declared->function], compared))
+                fields.push_back(std::move(*field));
     for (Field &field : fields) field.rank = rank_of(ast, fields, *field.function);
     std::ranges::stable_sort(fields, std::greater{}, [](const Field &field) {
         return std::pair(!is_flat_field(*field.function), field.rank);

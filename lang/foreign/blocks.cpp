@@ -61,7 +61,8 @@ class Blocks : WordChanges {
                                                               : end_of_statement(close + 1);
         Diagnostic &d = say(words(i, i), "what all turns of a loop have in common is an "
                                          "`intersection` with the loop in its block");
-        if (last == 0) {
+        const bool moved = i > 0 && kind(i - 1) == Tok::Close; // told with what moves it
+        if (last == 0 || moved) {
             d.help("write `intersection { for i in 0..n { … } }`");
             return true;
         }

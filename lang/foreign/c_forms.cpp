@@ -1,8 +1,15 @@
-// `switch` and `do … while` of C and its kin, and the lines of its preprocessor that choose.
+// `switch` and `do … while` of C and its kin, the lines of its preprocessor that choose, and
+// OpenSCAD's `let(…)` before a value.
 #include "lang/foreign/foreign.h"
 #include "lang/lexer.h"
 
 namespace fathom::lang {
+
+bool ForeignSyntax::c_statement(Index first) {
+    return (text(first) == "struct" && foreign_struct(first)) ||
+           (text(first) == "switch" && switch_choice(first)) ||
+           (text(first) == "do" && do_loop(first));
+}
 
 // `switch (x) { case 1: a; break; case 2: case 3: b; break; default: c; }`, where no case runs on into
 // the next one.
@@ -59,6 +66,27 @@ bool ForeignSyntax::switch_choice(Index first) {
     return true;
 }
 
+// OpenSCAD's `function f(x) = let(a = 2*x, b = a) a + b;`, at its `let`: a body of statements.
+bool ForeignSyntax::let_of_value(Index at) {
+    const Index close = match(at + 1), assign = at - 1;
+    if (kind(at) != Tok::Let || kind(at + 1) != Tok::Open || close <= at + 1 || at < 4 ||
+        kind(assign) != Tok::Assign || kind(assign - 1) != Tok::Close)
+        return false;
+    Index head = assign - 1;
+    while (head > 0 && !token(head).first_on_line && kind(head) != Tok::End) --head;
+    const Index end = statement_end(at);
+    if (kind(head) != Tok::Fn || end <= close + 1) return false;
+    std::vector<Edit> edits{{{id_, token(assign).begin, token(at + 1).end}, "{ let "}};
+    for (Index i = at + 2; i<close; i = match(i)> i ? match(i) + 1 : i + 1)
+        if (kind(i) == Tok::Comma) edits.push_back({span(i), "; let"});
+    edits.push_back({span(close), ";"});
+    edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, " }"});
+    failed_ = end - 1;
+    foreign(span(at), "names are bound by a `let` each, before what uses them")
+        .help("write `{ let a = …; value }`", std::move(edits));
+    return true;
+}
+
 // `do { … } while (c);`: a loop that its condition ends from the second turn on.
 bool ForeignSyntax::do_loop(Index first) {
     const Index open = first + 1, close = match(open), at = close + 1;
@@ -89,6 +117,7 @@ std::string ForeignSyntax::zero_record(std::string_view type) const {
 // At `#if`: the edits that leave its lines away, and what they leave out, where that is known by a
 // number or by whether the text defines a name.
 std::vector<Edit> ForeignWords::chosen_lines(std::uint32_t begin) const {
+    if (!may_look_far()) return {};
     const std::string_view all = source_.text;
     const auto line_end = [&](std::size_t at) { return std::min(all.find('\n', at), all.size()); };
     const auto word_at = [&](std::size_t at) { // `# if`, too

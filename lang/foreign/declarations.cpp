@@ -234,7 +234,8 @@ void ForeignSyntax::foreign_unbound(Index first, Index name, std::string_view ty
     if (!in_function_ && later) // there the first assignment is the declaration
         d.help("leave it away: `let " + declared + " = …` declares it where it has its value",
                {without_statement(first)});
-    else if (!in_function_ && may_look_far() && !mentioned())
+    else if (!in_function_ && !type.empty() && may_look_far() &&
+             statement_end(first) + 1 < tokens_.tokens.size() && !mentioned())
         d.help("leave it away: nothing uses it", {without_statement(first)});
     else if (!record.empty())
         d.help(to_write("var " + declared + " = " + record),

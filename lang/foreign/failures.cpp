@@ -31,8 +31,8 @@ bool ForeignSyntax::foreign_operand(Wanted wanted, Index at) {
     if (found == Tok::Let && is_one_of(kind(before), {Tok::Open, Tok::FreshOpen}) &&
         lisp_let(before))
         return true;
-    if (list_spread(at) || column_of_rows(at) || (found == Tok::Arrow && lisp_arrow(at)) ||
-        bars_of_amount(at))
+    if (list_spread(at) || column_of_rows(at) || let_of_value(at) ||
+        (found == Tok::Arrow && lisp_arrow(at)) || bars_of_amount(at))
         return true;
     if (found == Tok::Let && kind(before) == Tok::If) {
         foreign(span(before, at), "a condition binds no name: every name has a value")

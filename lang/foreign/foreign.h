@@ -59,6 +59,12 @@ namespace program {
 bool answer(const Source &source, SourceId id, Diagnostics &diagnostics);
 } // namespace program
 
+// Whether all of a text may be looked at for one report: not where there are many reports.
+inline bool are_few(const Diagnostics &reports) {
+    constexpr std::size_t most = 100;
+    return reports.items().size() < most;
+}
+
 // What the reader of words asks; see lexer.h.
 class ForeignWords : protected WordReading {
   protected:
@@ -82,6 +88,7 @@ class ForeignWords : protected WordReading {
     enum class Faces { None, OfSolid, HandedOn };
     Faces faces_of(Span assignment) const;
     bool told_before(std::uint32_t begin, std::uint32_t end, const std::vector<Edit> &edits);
+    bool may_look_far() const { return are_few(diagnostics_); }
     bool mark_of_wgsl(std::uint32_t begin, std::uint32_t end);
     std::vector<Edit> chosen_lines(std::uint32_t begin) const;
 
@@ -255,11 +262,7 @@ class ForeignSyntax : protected TokenReading {
     bool values_side_by_side(Index first, Index past);
     bool holds_comma(Index open) const;
 
-    // Whether all words may be looked at for one report: not where there are many reports.
-    bool may_look_far() const {
-        constexpr std::size_t most_reports = 100;
-        return diagnostics_.items().size() < most_reports;
-    }
+    bool may_look_far() const { return are_few(diagnostics_); }
     bool bars_of_amount(Index at);
     std::vector<Edit> parts_of_point(Index first, Index past);
     std::vector<Edit> shape_of_equation(Index first, Index past);
@@ -274,6 +277,8 @@ class ForeignSyntax : protected TokenReading {
     // Records of theirs (records.cpp).
     bool foreign_struct(Index first);
     std::string zero_record(std::string_view type) const;
+    bool c_statement(Index first);
+    bool let_of_value(Index at);
     bool switch_choice(Index first);
     bool do_loop(Index first);
     bool named_record(Index brace);

@@ -295,7 +295,10 @@ bool ForeignSyntax::juxtaposed_calls(Index first, Index at) {
             chain.insert(0, "." + one);
     failed_ = shape;
     Index end = statement_end(first);
-    const bool statement = kind(shape) != Tok::Name; // a loop or a choice
+    const bool statement = kind(shape) != Tok::Name;      // a loop or a choice
+    constexpr std::string_view meeting = "intersection_"; // before `for`
+    const std::string_view before = text(0, token(shape).begin);
+    const std::string block = before.ends_with(meeting) ? "intersection { " : "union { ";
     if (kind(shape) == Tok::If && goes_on_with_else(end))
         for (++end; !ends_statement(end);) end = match(end) > end ? match(end) + 1 : end + 1;
     const Index past = match(shape + 1) + 1;
@@ -305,7 +308,7 @@ bool ForeignSyntax::juxtaposed_calls(Index first, Index at) {
     const bool takes = kind(shape + 1) == Tok::Open && kind(past) == Tok::Name && past < end &&
                        !token(past).first_on_line;
     const std::string moved = whole       ? solid.text
-                              : statement ? "union { " + std::string(text(shape)) + " … }"
+                              : statement ? block + std::string(text(shape)) + " … }"
                                           : std::string(text(shape)) + "(…)";
     if (whole) forget_arguments(shape + 1);
     Diagnostic &d =
@@ -317,13 +320,13 @@ bool ForeignSyntax::juxtaposed_calls(Index first, Index at) {
     if (whole && !solid.lost.empty()) d.note(std::string(solid.lost));
     const std::string written = in_code(moved + chain);
     std::vector<Edit> edits{
-        {{id_, token(first).begin, token(shape).begin}, statement ? "union { " : ""}};
+        {{id_, token(first).begin, token(shape).begin}, statement ? block : ""}};
     const std::uint32_t last = token(end - 1).end;
     if (whole) {
         edits.push_back({{id_, token(shape).begin, last}, solid.text + chain});
     } else {
         if (takes) edits.push_back({{id_, token(past - 1).end, token(past).begin}, " { "});
-        edits.push_back({{id_, last, last}, (takes || statement ? " }" : "") + chain});
+        edits.push_back({{id_, last, last}, (takes ? " }" : "") + std::string(statement ? " }" : "") + chain});
     }
     d.help(written == in_code("…")
                ? "write the shape, and behind it what is done to it, the nearest "

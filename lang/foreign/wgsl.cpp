@@ -31,6 +31,7 @@ std::size_t behind_block(std::string_view text, std::size_t at) {
 // own. False where it is another mark.
 bool ForeignWords::mark_of_wgsl(std::uint32_t begin, std::uint32_t end) {
     if (begin < marked_until_) return true; // told with the first one
+    if (!may_look_far()) return false;
     const std::string_view all = source_.text, mark = all.substr(begin, end - begin);
     constexpr std::array<std::string_view, 3> stages = {"@fragment", "@vertex", "@compute"};
     if (is_one_of(mark, stages)) {

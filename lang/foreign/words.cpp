@@ -177,9 +177,7 @@ bool ForeignSyntax::foreign_statement(Index first) {
     }
     if (text(first) == "parametric" && curv_slider(first)) return true;
     if (text(first) == "try" && tried_block(first)) return true;
-    if (text(first) == "struct" && foreign_struct(first)) return true;
-    if (text(first) == "switch" && switch_choice(first)) return true;
-    if (text(first) == "do" && do_loop(first)) return true;
+    if (c_statement(first)) return true;
     if (text(first) == "enum") {
         enumeration(first);
         return true;

@@ -307,7 +307,7 @@ Written Writer::curv_call(const Node &n) {
     if (const auto made = curv_shape(callee.text, a)) return *made;
     Node plain = node(Is::Call, "", {node(Is::Name, callee.text == "mag" ? "norm" : callee.text)});
     const bool spread = callee.text == "max" || callee.text == "min" || callee.text == "dot" ||
-                        callee.text == "cross";
+                        callee.text == "cross" || callee.text == "pow";
     if (!is_mathematical(plain.parts[0].text)) return unread_call(callee.text, {text(a)});
     if (spread && a.is == Is::List)
         plain.parts.insert(plain.parts.end(), a.parts.begin(), a.parts.end());

@@ -69,8 +69,9 @@ std::string without_indent(std::string_view text) {
 
 bool answer_hosted(const Source &source, SourceId id, Diagnostics &diagnostics) {
     const std::string_view text = source.text, shader = hosted_shader(text);
-    if (shader.empty() || text.find("\nfn ") < text.find(shader)) return false;
+    if (shader.empty()) return false;
     const auto begin = static_cast<std::uint32_t>(shader.data() - text.data());
+    if (text.find("\nfn ") < begin) return false; // a text of ours, which has a string
     const auto size = static_cast<std::uint32_t>(text.size());
     const std::size_t line = std::min(shader.find('\n'), shader.size());
     diagnostics
