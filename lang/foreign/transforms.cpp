@@ -326,7 +326,8 @@ bool ForeignSyntax::juxtaposed_calls(Index first, Index at) {
         edits.push_back({{id_, token(shape).begin, last}, solid.text + chain});
     } else {
         if (takes) edits.push_back({{id_, token(past - 1).end, token(past).begin}, " { "});
-        edits.push_back({{id_, last, last}, (takes ? " }" : "") + std::string(statement ? " }" : "") + chain});
+        edits.push_back(
+            {{id_, last, last}, (takes ? " }" : "") + std::string(statement ? " }" : "") + chain});
     }
     d.help(written == in_code("…")
                ? "write the shape, and behind it what is done to it, the nearest "
