@@ -207,6 +207,11 @@ struct Step {
     }
     // The same number at all points of the cell, also in single precision.
     bool is_still(int arg, int c) const { return zero(grad(arg, c)) && !in.wavers; }
+    // Whether an argument may be 0/0: also the one that is never the least, since what a minimum of no
+    // number is hangs on the order of its arguments (ir/semantics.h).
+    bool may_be_undefined() const {
+        return std::ranges::any_of(in.args, [&](Slot a) { return machine.undefined_[a] != 0; });
+    }
     bool has_pole(int arg) const { return machine.pole_[in.args[std::size_t(arg)]] != 0; }
     bool may_jump(int arg) const { // of itself, so that it need not pass a choice's border
         return norm(arg) == ir::rounding::infinity || any_odd;

@@ -146,7 +146,7 @@ Machine::Machine(const Tape &tape, const Ranges &ranges, bool bends)
       odd_(tape.components), norm_(tape.first.size()), relative_(tape.first.size(), infinity),
       raised_(tape.first.size()), bend_(bends ? tape.first.size() : 0),
       trouble_(tape.first.size(), Trouble::None), cause_(tape.first.size()),
-      pole_(tape.first.size()) {
+      pole_(tape.first.size()), undefined_(tape.first.size()) {
     in_reach_ = tape.grows;
     made_by_.assign(tape_.first.size(), -1);
     for (std::size_t i = 0; i < tape_.each.size(); ++i)
@@ -247,6 +247,7 @@ void Machine::copy(Slot from, Slot to) {
     trouble_[to] = trouble_[from];
     cause_[to] = cause_[from];
     pole_[to] = pole_[from];
+    undefined_[to] = undefined_[from];
 }
 
 // `into` becomes what holds both; a jump from one to the other may lie in the cell.
@@ -259,6 +260,7 @@ void Machine::join(Slot into, Slot other, bool jump, NodeId cause) {
         for (std::size_t j = 0; j < 3; ++j)
             grad_[a + i][j] = hull(grad_[a + i][j], grad_[b + i][j]);
     }
+    undefined_[into] = undefined_[into] | undefined_[other];
     if (norm_[other] > norm_[into]) {
         norm_[into] = norm_[other];
         trouble_[into] = trouble_[other];
@@ -316,6 +318,15 @@ void Machine::run_loop(const Instruction &instruction) {
     }
 }
 
+// A quotient whose sides may both be 0.
+bool Machine::is_0_by_0(const Instruction &instruction) const {
+    if (instruction.op != Op::Div) return false;
+    const Slot above = instruction.args[0];
+    for (std::uint32_t i = 0; i < tape_.size[above]; ++i)
+        if (value_[tape_.first[above] + i].contains(0)) return true;
+    return false;
+}
+
 void Machine::fail(const Instruction &instruction, Trouble why) {
     Slot s = instruction.out;
     for (std::uint32_t i = 0; i < tape_.size[s]; ++i) {
@@ -328,6 +339,8 @@ void Machine::fail(const Instruction &instruction, Trouble why) {
     trouble_[s] = why;
     cause_[s] = instruction.node;
     pole_[s] = why == Trouble::Singular && poles[instruction.op];
+    undefined_[s] = pole_[s] && is_0_by_0(instruction);
+    for (Slot a : instruction.args) undefined_[s] = undefined_[s] | undefined_[a];
     for (Slot a : instruction.args) // what fed it was in trouble before
         if (trouble_[a] != Trouble::None) {
             trouble_[s] = trouble_[a];
@@ -375,6 +388,9 @@ void Machine::finish(const Instruction &instruction, double rule, bool odd_used)
     trouble_[s] = Trouble::None;
     cause_[s] = NodeId();
     pole_[s] = 0;
+    undefined_[s] = 0;
+    if (instruction.op != Op::Select) // whose other arm is not read
+        for (Slot a : instruction.args) undefined_[s] = undefined_[s] | undefined_[a];
     const double relative = relative_[s]; // may be known though the slope has no bound
     if (norm_[s] == infinity) fail(instruction, Trouble::Singular), relative_[s] = relative;
 }

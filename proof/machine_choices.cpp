@@ -21,6 +21,7 @@ Interval truth_of(bool may_be_false, bool may_be_true) {
 } // namespace
 
 void Step::extreme() {
+    if (may_be_undefined()) return fail(Trouble::Singular);
     double m = extremum(
         in.op == Op::Max ? 1 : -1, [&](int c) { return value(0, c); },
         [&](int c) { return grad(0, c); }, [&](int c) { return value(1, c); },
@@ -50,6 +51,7 @@ int Step::known_extreme(int c) const {
 }
 
 void Step::combine() {
+    if (may_be_undefined()) return fail(Trouble::Singular);
     int sign = in.op == Op::Intersection ? 1 : -1;
     Interval v = value(0, 0);
     Row g = grad(0, 0);
@@ -83,6 +85,7 @@ void Step::blend() {
 }
 
 void Step::clamped() {
+    if (may_be_undefined()) return fail(Trouble::Singular);
     const auto nothing_known = [](int) { return -1; };
     double m = extremum(
         1, [&](int c) { return value(0, c); }, [&](int c) { return grad(0, c); },

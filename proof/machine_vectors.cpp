@@ -361,6 +361,7 @@ void Step::normalize() {
     if (singular) {
         fail(Trouble::Singular);
         if (is_no_number) machine.pole_[out] = 1;
+        if (in.divides) machine.undefined_[out] = 1;
         return;
     }
     finish(norm(0) == 0 ? 0 : up(norm(0) / length.lo, 4), any_odd);
