@@ -182,6 +182,10 @@ void Machine::run(const Cell &cell) {
 void Machine::conclude() {
     Slot s = tape_.result;
     result_norm_ = norm_[s];
+    if (undefined_[s] && result_norm_ < infinity) { // a rule that bounds its slope sees no 0/0
+        result_norm_ = infinity;
+        trouble_[s] = Trouble::Singular;
+    }
     for (std::uint32_t i = 0; i < tape_.size[s]; ++i)
         if (in_reach_ && result_norm_ > 0 && value_[tape_.first[s] + i].magnitude() > max_single) {
             result_norm_ = infinity;
@@ -389,8 +393,7 @@ void Machine::finish(const Instruction &instruction, double rule, bool odd_used)
     cause_[s] = NodeId();
     pole_[s] = 0;
     undefined_[s] = 0;
-    if (instruction.op != Op::Select) // whose other arm is not read
-        for (Slot a : instruction.args) undefined_[s] = undefined_[s] | undefined_[a];
+    for (Slot a : instruction.args) undefined_[s] = undefined_[s] | undefined_[a];
     const double relative = relative_[s]; // may be known though the slope has no bound
     if (norm_[s] == infinity) fail(instruction, Trouble::Singular), relative_[s] = relative;
 }
