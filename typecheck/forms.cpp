@@ -59,23 +59,27 @@ std::optional<std::vector<Value>> with_form(Interpreter &ev, const Value &old, c
     return all;
 }
 
-// Whether an argument is of the parameter's type as it is: a number fills no vector.
-bool takes_as_is(const Interpreter &ev, const Value &v, const lang::TypeExpr &type) {
+// How far an argument is from a parameter: 0 of its type, 1 an int for a float or a vec3 for a color
+// and the reverse, `filled` a number for a vector.
+constexpr int filled = 1000; // more than all parameters' ones together
+int distance_to(const Interpreter &ev, const Value &v, const lang::TypeExpr &type) {
     using lang::TypeName;
-    if (type.kind != lang::TypeExpr::Kind::Name || !is_numeric(v)) return true;
+    if (type.kind != lang::TypeExpr::Kind::Name || !is_numeric(v)) return 0;
+    const bool vector = type.named == TypeName::Vec2 || type.named == TypeName::Vec3 ||
+                        type.named == TypeName::Vec4 || type.named == TypeName::Color;
     switch (numeric_type(ev, v)) {
-    case ir::Type::Int: return type.named == TypeName::Int || type.named == TypeName::Float;
-    case ir::Type::Float: return type.named == TypeName::Float;
-    case ir::Type::Vec2: return type.named == TypeName::Vec2;
-    case ir::Type::Vec3: return type.named == TypeName::Vec3 || type.named == TypeName::Color;
-    case ir::Type::Vec4: return type.named == TypeName::Vec4;
+    case ir::Type::Int: return vector ? filled : type.named == TypeName::Int ? 0 : 1;
+    case ir::Type::Float: return vector ? filled : 0;
+    case ir::Type::Vec3: return type.named == (v.color ? TypeName::Color : TypeName::Vec3) ? 0 : 1;
+    case ir::Type::Vec2:
+    case ir::Type::Vec4:
     case ir::Type::Bool:
     case ir::Type::Mat2:
     case ir::Type::Mat3:
     case ir::Type::Mat4:
-    case ir::Type::Hit: return true;
+    case ir::Type::Hit: return 0;
     }
-    return true;
+    return 0;
 }
 
 } // namespace
@@ -104,31 +108,35 @@ void hoist_functions(Interpreter &ev, const File &ast, lang::BlockId block, std:
 Value call_overloads(Interpreter &ev, const Value &callee, std::string_view name,
                      std::span<const Argument> args, Span call, Span callee_span) {
     const std::vector<Value> candidates = ev.lists[callee.id];
-    const Value *first = nullptr;
-    bool several = false; // a number may fill vectors of several lengths
+    const Value *nearest = nullptr;
+    int least = 0;
+    bool several = false; // are as near as the nearest
     for (const Value &candidate : candidates) {
         const Closure &c = ev.closures[candidate.id];
         const lang::Function &f = c.ast->functions[c.function];
         ++ev.quiet;
         auto bound = bind_arguments(ev, name, formals_of(ev, c), args, call, callee_span);
-        bool fits = bound.has_value(), exact = fits;
+        bool fits = bound.has_value();
+        int distance = 0;
         for (std::size_t i = 0; fits && i < f.parameters.size(); ++i)
             if ((*bound)[i].given && f.parameters[i].type) {
                 fits = accepts(ev, (*bound)[i].value, *f.parameters[i].type);
-                exact = exact &&
-                        (c.library || takes_as_is(ev, (*bound)[i].value, *f.parameters[i].type));
+                distance += distance_to(ev, (*bound)[i].value, *f.parameters[i].type);
             }
         --ev.quiet;
-        if (fits && exact) return call_closure(ev, candidate, name, args, call, callee_span);
-        several = several || (fits && first && !c.library);
-        if (fits && !first) first = &candidate;
+        if (fits && c.library) // whose order tells
+            return call_closure(ev, candidate, name, args, call, callee_span);
+        if (!fits || (nearest && distance > least)) continue;
+        several = nearest && distance == least;
+        nearest = &candidate;
+        least = distance;
     }
     if (several) {
         report(ev, Code::TypeMismatch, call, fmt::format("several forms of `{}` take this", name))
-            .help("give it the numbers that the form wants: `vec2(1)`, `vec3(1)`");
+            .help("give it what one form takes as it is: `vec2(1)` or `vec3(1)`, `1.0` or `1`");
         return poison();
     }
-    if (first) return call_closure(ev, *first, name, args, call, callee_span);
+    if (nearest) return call_closure(ev, *nearest, name, args, call, callee_span);
     // none fits: the one whose first parameter does explains best
     const Value *best = &candidates[0];
     for (const Value &candidate : candidates) {

@@ -1,5 +1,5 @@
-// Bodies that stand in no braces: by indentation behind a `:`, behind `=>`, `then` or `do`, or
-// directly behind their header.
+// Bodies that stand in no braces: by indentation behind a `:`, behind `=>`, `then` or `do`, behind
+// `let(…)`, or directly behind their header.
 #include "lang/foreign/foreign.h"
 
 #include <algorithm>
@@ -186,6 +186,27 @@ bool ForeignSyntax::foreign_body(Index at) {
         }
     }
     foreign(span(at), "a body stands in braces").help("write `" + told + "`", std::move(edits));
+    return true;
+}
+
+// OpenSCAD's `function f(x) = let(a = 2*x, b = a) a + b;`, at its `let`: a body of statements.
+bool ForeignSyntax::let_of_value(Index at) {
+    const Index close = match(at + 1), assign = at - 1;
+    if (kind(at) != Tok::Let || kind(at + 1) != Tok::Open || close <= at + 1 || at < 4 ||
+        kind(assign) != Tok::Assign || kind(assign - 1) != Tok::Close)
+        return false;
+    Index head = assign - 1;
+    while (head > 0 && !token(head).first_on_line && kind(head) != Tok::End) --head;
+    const Index end = statement_end(at);
+    if (kind(head) != Tok::Fn || end <= close + 1) return false;
+    std::vector<Edit> edits{{{id_, token(assign).begin, token(at + 1).end}, "{ let "}};
+    for (Index i = at + 2; i<close; i = match(i)> i ? match(i) + 1 : i + 1)
+        if (kind(i) == Tok::Comma) edits.push_back({span(i), "; let"});
+    edits.push_back({span(close), ";"});
+    edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, " }"});
+    failed_ = end - 1;
+    foreign(span(at), "names are bound by a `let` each, before what uses them")
+        .help("write `{ let a = …; value }`", std::move(edits));
     return true;
 }
 

@@ -1,5 +1,4 @@
-// `switch` and `do … while` of C and its kin, the lines of its preprocessor that choose, and
-// OpenSCAD's `let(…)` before a value.
+// `switch`, `do … while` and records without a value, as C and its kin have them.
 #include "lang/foreign/foreign.h"
 #include "lang/lexer.h"
 
@@ -66,27 +65,6 @@ bool ForeignSyntax::switch_choice(Index first) {
     return true;
 }
 
-// OpenSCAD's `function f(x) = let(a = 2*x, b = a) a + b;`, at its `let`: a body of statements.
-bool ForeignSyntax::let_of_value(Index at) {
-    const Index close = match(at + 1), assign = at - 1;
-    if (kind(at) != Tok::Let || kind(at + 1) != Tok::Open || close <= at + 1 || at < 4 ||
-        kind(assign) != Tok::Assign || kind(assign - 1) != Tok::Close)
-        return false;
-    Index head = assign - 1;
-    while (head > 0 && !token(head).first_on_line && kind(head) != Tok::End) --head;
-    const Index end = statement_end(at);
-    if (kind(head) != Tok::Fn || end <= close + 1) return false;
-    std::vector<Edit> edits{{{id_, token(assign).begin, token(at + 1).end}, "{ let "}};
-    for (Index i = at + 2; i<close; i = match(i)> i ? match(i) + 1 : i + 1)
-        if (kind(i) == Tok::Comma) edits.push_back({span(i), "; let"});
-    edits.push_back({span(close), ";"});
-    edits.push_back({{id_, token(end - 1).end, token(end - 1).end}, " }"});
-    failed_ = end - 1;
-    foreign(span(at), "names are bound by a `let` each, before what uses them")
-        .help("write `{ let a = …; value }`", std::move(edits));
-    return true;
-}
-
 // `do { … } while (c);`: a loop that its condition ends from the second turn on.
 bool ForeignSyntax::do_loop(Index first) {
     const Index open = first + 1, close = match(open), at = close + 1;
@@ -110,57 +88,6 @@ std::string ForeignSyntax::zero_record(std::string_view type) const {
         for (Index k = i + 3; k < match(i + 2); ++k)
             if (kind(k) == Tok::Name) zeros += zeros.empty() ? "0.0" : ", 0.0";
         return zeros.empty() ? zeros : std::string(type) + "(" + zeros + ")";
-    }
-    return {};
-}
-
-// At `#if`: the edits that leave its lines away, and what they leave out, where that is known by a
-// number or by whether the text defines a name.
-std::vector<Edit> ForeignWords::chosen_lines(std::uint32_t begin) const {
-    if (!may_look_far()) return {};
-    const std::string_view all = source_.text;
-    const auto line_end = [&](std::size_t at) { return std::min(all.find('\n', at), all.size()); };
-    const auto word_at = [&](std::size_t at) { // `# if`, too
-        std::size_t from = all.find_first_not_of(" \t", at + 1), past = from;
-        while (past < all.size() && is_word_char(all[past])) ++past;
-        return all.substr(std::min(from, all.size()), past - from);
-    };
-    const auto argument = [&](std::size_t at) {
-        const std::string_view line = all.substr(at, line_end(at) - at);
-        const std::size_t from = line.find(word_at(at)) + word_at(at).size();
-        const std::size_t first = line.find_first_not_of(" \t", from);
-        return first == std::string_view::npos
-                   ? std::string_view()
-                   : line.substr(first, line.find_first_of(" \t\r/", first) - first);
-    };
-    const std::string name(argument(begin));
-    const std::string_view word = word_at(begin);
-    bool holds = false;
-    if (word == "if" && (name == "0" || name == "1"))
-        holds = name == "1";
-    else if ((word == "ifdef" || word == "ifndef") && !name.empty())
-        holds = (all.substr(0, begin).find("#define " + name) != std::string_view::npos ||
-                 all.substr(0, begin).find("let " + name + " ") != std::string_view::npos) ==
-                (word == "ifdef");
-    else
-        return {};
-    std::size_t other = 0;
-    int depth = 1;
-    for (std::size_t at = line_end(begin); at < all.size(); at = line_end(at + 1)) {
-        const std::size_t first = all.find_first_not_of(" \t", at + 1);
-        if (first == std::string_view::npos || all[first] != '#') continue;
-        const std::string_view what = word_at(first);
-        if (what == "if" || what == "ifdef" || what == "ifndef") ++depth;
-        if (what == "elif" && depth == 1) return {};
-        if (what == "else" && depth == 1) other = first;
-        if (what != "endif" || --depth > 0) continue;
-        const auto cut = [&](std::size_t from, std::size_t to) {
-            return Edit{span(static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(to)), ""};
-        };
-        const std::size_t past = line_end(first);
-        if (holds) return {cut(begin, line_end(begin)), cut(other > 0 ? other : first, past)};
-        if (other == 0) return {cut(begin, past)};
-        return {cut(begin, line_end(other)), cut(first, past)};
     }
     return {};
 }

@@ -25,8 +25,6 @@ constexpr std::array<std::string_view, 10> screens = {
     "iResolution", "u_resolution", "uResolution", "resolution", "iMouse",
     "u_mouse",     "uMouse",       "mouse",       "iFrame",     "iTimeDelta"};
 constexpr std::size_t most_uses = 40; // of a name that one edit changes
-constexpr std::array<std::string_view, 9> clocks = {
-    "time", "iTime", "u_time", "uTime", "iGlobalTime", "t", "seconds", "elapsed", "globalTime"};
 
 // What is known as `time` where it is used, too.
 bool means_time(std::string_view name) {
@@ -41,6 +39,12 @@ bool is_their_own(std::string_view type) {
 }
 
 } // namespace
+
+bool is_clock(std::string_view name) {
+    constexpr std::array<std::string_view, 9> clocks = {
+        "time", "iTime", "u_time", "uTime", "iGlobalTime", "t", "seconds", "elapsed", "globalTime"};
+    return is_one_of(name, clocks);
+}
 
 std::string range_around(std::string_view number, bool negative) {
     const auto value = parse_number(number);
@@ -136,7 +140,7 @@ bool ForeignSyntax::foreign_stream(Index first, Index name) {
             .help("leave it away", {away});
         return true;
     }
-    if (is_one_of(declared, clocks)) {
+    if (is_clock(declared)) {
         std::vector<Edit> edits{away}; // and its uses, where they are not known for the time
         for (Index i = name + 1;
              !means_time(declared) && may_look_far() && i < tokens_.tokens.size() && !edits.empty();

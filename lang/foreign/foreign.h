@@ -21,6 +21,7 @@ namespace fathom::lang {
 bool is_foreign_value(std::string_view name);
 bool is_foreign_module(std::string_view name);
 bool is_foreign_transform(std::string_view name); // what OpenSCAD writes before a shape
+bool is_clock(std::string_view name);             // of the seconds of a shader, as `iTime`
 
 // A string with values in it, as `f"r = {r}"` and `${r}` of JavaScript, as a sum; empty where it
 // holds none, or what is not plain. `opening` is what stands before a value.

@@ -16,6 +16,16 @@ bool is_word(std::string_view text) {
     return !text.empty() && std::ranges::all_of(text, is_word_char) && !is_digit(text[0]);
 }
 
+// Whether a line of the text defines the name, also by our `let`.
+bool defines(std::string_view text, const std::string &name) {
+    for (const std::string &line : {"#define " + name, "let " + name})
+        for (std::size_t at = text.find(line); at != text.npos; at = text.find(line, at + 1)) {
+            const std::size_t past = at + line.size();
+            if (past == text.size() || !is_word_char(text[past])) return true;
+        }
+    return false;
+}
+
 } // namespace
 
 // `#define N 3` is read as `let N = 3`, `#define F(x) …` as `fn F(x) = …`: the end of what stands
@@ -69,6 +79,55 @@ std::uint32_t ForeignWords::define(std::uint32_t begin, std::uint32_t end) {
     }
     add(Tok::Assign, at(head_end), at(head_end));
     return at(head_end);
+}
+
+// At `#if`: the edits that leave its lines away, and what they leave out, where that is known by a
+// number or by whether the text defines a name.
+std::vector<Edit> ForeignWords::chosen_lines(std::uint32_t begin) const {
+    if (!may_look_far()) return {};
+    const std::string_view all = source_.text;
+    const auto line_end = [&](std::size_t at) { return std::min(all.find('\n', at), all.size()); };
+    const auto word_at = [&](std::size_t at) { // `# if`, too
+        std::size_t from = all.find_first_not_of(" \t", at + 1), past = from;
+        while (past < all.size() && is_word_char(all[past])) ++past;
+        return all.substr(std::min(from, all.size()), past - from);
+    };
+    const auto argument = [&](std::size_t at) {
+        const std::string_view line = all.substr(at, line_end(at) - at);
+        const std::size_t from = line.find(word_at(at)) + word_at(at).size();
+        const std::size_t first = line.find_first_not_of(" \t", from);
+        return first == std::string_view::npos
+                   ? std::string_view()
+                   : line.substr(first, line.find_first_of(" \t\r/", first) - first);
+    };
+    const std::string name(argument(begin));
+    const std::string_view word = word_at(begin);
+    bool holds = false;
+    if (word == "if" && (name == "0" || name == "1"))
+        holds = name == "1";
+    else if ((word == "ifdef" || word == "ifndef") && !name.empty())
+        holds = defines(all.substr(0, begin), name) == (word == "ifdef");
+    else
+        return {};
+    std::size_t other = 0;
+    int depth = 1;
+    for (std::size_t at = line_end(begin); at < all.size(); at = line_end(at + 1)) {
+        const std::size_t first = all.find_first_not_of(" \t", at + 1);
+        if (first == std::string_view::npos || all[first] != '#') continue;
+        const std::string_view what = word_at(first);
+        if (what == "if" || what == "ifdef" || what == "ifndef") ++depth;
+        if (what == "elif" && depth == 1) return {};
+        if (what == "else" && depth == 1) other = first;
+        if (what != "endif" || --depth > 0) continue;
+        const auto cut = [&](std::size_t from, std::size_t to) {
+            return Edit{span(static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(to)), ""};
+        };
+        const std::size_t past = line_end(first);
+        if (holds) return {cut(begin, line_end(begin)), cut(other > 0 ? other : first, past)};
+        if (other == 0) return {cut(begin, past)};
+        return {cut(begin, line_end(other)), cut(first, past)};
+    }
+    return {};
 }
 
 // `#version`, `#include`, `#ifdef`: the line is theirs.

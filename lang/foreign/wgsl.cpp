@@ -10,11 +10,6 @@ namespace {
 
 constexpr std::size_t most_bound = 40; // of what is bound, in one edit
 
-bool is_clock(std::string_view name) {
-    constexpr std::array<std::string_view, 5> clocks = {"time", "iTime", "t", "elapsed", "seconds"};
-    return is_one_of(name, clocks);
-}
-
 // Behind the brace that closes the first one from `at` on; 0 where there is none.
 std::size_t behind_block(std::string_view text, std::size_t at) {
     int depth = 0;

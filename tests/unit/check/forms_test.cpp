@@ -34,6 +34,28 @@ TEST_CASE("a call means the form whose types its arguments have") {
     CHECK(radius_of(forms, "[1, 2].f()") == Approx(2).epsilon(1e-4));
 }
 
+TEST_CASE("a call means the nearest form, in whatever order they stand") {
+    const std::string a = "fn f(a: float) -> float = 1\n", b = "fn f(a: int) -> float = 2\n";
+    const std::string c = "fn g(a: color) -> float = 1\n", d = "fn g(a: vec3) -> float = 2\n";
+    for (const std::string &forms : {a + b, b + a}) {
+        CHECK(radius_of(forms, "f(7)") == Approx(2).epsilon(1e-4));
+        CHECK(radius_of(forms, "f(7.5)") == Approx(1).epsilon(1e-4));
+    }
+    for (const std::string &forms : {c + d, d + c}) {
+        CHECK(radius_of(forms, "g(red)") == Approx(1).epsilon(1e-4));
+        CHECK(radius_of(forms, "g(vec3(1, 2, 3))") == Approx(2).epsilon(1e-4));
+    }
+    const std::string e = "fn h(a: float, b: vec2) -> float = 1\n",
+                      g = "fn h(a: vec2, b: vec2) -> float = 2\n";
+    for (const std::string &forms : {e + g, g + e})
+        CHECK(radius_of(forms, "h(1, 1)") == Approx(1).epsilon(1e-4));
+    // one int is converted by either
+    const std::string h = "fn k(a: int, b: float) -> float = 1\n",
+                      i = "fn k(a: float, b: int) -> float = 2\n";
+    CHECK(code_of(h + i + "sphere(k(1, 1))\n") == "type-mismatch");
+    CHECK(radius_of(h + i, "k(1, 1.5)") == Approx(1).epsilon(1e-4));
+}
+
 TEST_CASE("forms call each other, also below what they call") {
     CHECK(compiled("fn g(p: vec3) -> float = g(p.xz) - p.y\nfn g(p: vec2) -> float = length(p)\n"
                    "implicit(p => g(p), within: ball(1))\n")
