@@ -111,6 +111,18 @@ void certify_distances(const Field &field, const Settings &settings, const Made 
     certify_mesh(inquiry, threads, progress, certificate);
 }
 
+// What is known by the mesh alone, and by the octree.
+void complete(const Field &field, const Made &made, Certificate &certificate) {
+    certificate.used_bound = field.proved;
+    const Form form = form_of(made.mesh);
+    certificate.components = form.components;
+    certificate.genus = form.genus;
+    const MeshSums sums = sums_of(made.mesh);
+    certificate.mesh_volume = sums.volume;
+    certificate.mesh_area = sums.area;
+    enclose_volume(made.octree, certificate);
+}
+
 } // namespace
 
 std::uint64_t volume_in_doubt(const Certificate &certificate, const Lattice &lattice) {
@@ -131,25 +143,20 @@ Form form_of(const Mesh &mesh) {
     return form;
 }
 
-bool is_near(const Field &field, const Settings &settings, const Made &made, Progress &progress) {
-    Certificate certificate;
-    certify_distances(field, settings, made, nullptr, true, progress, certificate);
-    return !progress.cancelled && certificate.near();
-}
-
 Certificate certify(const Field &field, const Settings &settings, const Made &made,
                     const Earlier *earlier, Progress &progress) {
     Certificate certificate = earlier ? kept_of(*earlier, made.octree) : Certificate{};
-    certificate.used_bound = field.proved;
     certify_distances(field, settings, made, earlier, false, progress, certificate);
-    if (progress.cancelled) return certificate;
-    const Form form = form_of(made.mesh);
-    certificate.components = form.components;
-    certificate.genus = form.genus;
-    const MeshSums sums = sums_of(made.mesh);
-    certificate.mesh_volume = sums.volume;
-    certificate.mesh_area = sums.area;
-    enclose_volume(made.octree, certificate);
+    if (!progress.cancelled) complete(field, made, certificate);
+    return certificate;
+}
+
+std::optional<Certificate> certify_if_near(const Field &field, const Settings &settings,
+                                           const Made &made, Progress &progress) {
+    Certificate certificate;
+    certify_distances(field, settings, made, nullptr, true, progress, certificate);
+    if (progress.cancelled || !certificate.near()) return std::nullopt;
+    complete(field, made, certificate);
     return certificate;
 }
 

@@ -94,8 +94,10 @@ struct Earlier {
 // changed since is proved again.
 Certificate certify(const Field &field, const Settings &settings, const Made &made,
                     const Earlier *earlier, Progress &progress);
-// Whether all of the mesh would be proved to be near the surface, and all of that near the mesh.
-bool is_near(const Field &field, const Settings &settings, const Made &made, Progress &progress);
+// The same where all of the mesh is near the surface, and all of that near the mesh; the work ends at
+// the first place of which that is not proved.
+std::optional<Certificate> certify_if_near(const Field &field, const Settings &settings,
+                                           const Made &made, Progress &progress);
 // Of a mesh of that scene and those settings.
 Certificate certify(const ir::Scene &scene, const Settings &settings, const Made &made,
                     Progress &progress);

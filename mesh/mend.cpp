@@ -372,9 +372,10 @@ void settle_shape(const ir::Scene &scene, const Field &field, const Settings &se
     if (was_wider || sharp || thin.sort == TooThin::Sort::Gaps ||
         mended.made.octree.nodes.size() > large)
         return;
-    std::optional<Wider> wide = draw_wider(scene, field, settings, mended.made,
-                                           ThinWalls{thin.thickness, thin.gap}, true, progress);
-    if (!wide || !wide->certificate.near()) return;
+    std::optional<Wider> wide =
+        draw_wider(scene, field, settings, mended.made, ThinWalls{thin.thickness, thin.gap},
+                   Proof::Certificate, progress);
+    if (!wide) return;
     mended.made = std::move(wide->made), certificate = std::move(wide->certificate);
 }
 
@@ -394,8 +395,9 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
     progress.from = mesh_share;
     progress.to = first_share;
     const Field field(scene, settings.time, settings.bounds);
-    std::optional<Wider> wide = draw_wider(scene, field, settings, mended.made,
-                                           mended.made.octree.undecided, true, progress);
+    std::optional<Wider> wide =
+        draw_wider(scene, field, settings, mended.made, mended.made.octree.undecided,
+                   Proof::AllOfBest, progress);
     const auto take_wide = [&] {
         mended.made = std::move(wide->made), mended.certificate = std::move(wide->certificate);
     };
@@ -407,8 +409,8 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
     }
     mended.certificate = certify(field, settings, mended.made, nullptr, progress);
     if (!wide && !progress.cancelled) { // what corners show may be crumbs
-        wide = draw_wider(scene, field, settings, mended.made, mended.certificate.undecided, true,
-                          progress);
+        wide = draw_wider(scene, field, settings, mended.made, mended.certificate.undecided,
+                          Proof::AllOfBest, progress);
         if (wide && wide->certificate.certified()) {
             take_wide();
             return mended;

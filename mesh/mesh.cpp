@@ -262,11 +262,12 @@ Made make_mesh(const ir::Scene &scene, const Settings &settings) {
     progress.from = progress.to; // it was at its end
     std::optional<Wider> wider;
     if (!made.octree.undecided.empty()) {
-        wider = draw_wider(scene, field, settings, made, made.octree.undecided, false, progress);
+        wider = draw_wider(scene, field, settings, made, made.octree.undecided, Proof::Distances,
+                           progress);
     } else if (const TooThin thin = too_thin_in(field, settings, made);
                thin.sort == TooThin::Sort::Holes || thin.sort == TooThin::Sort::Pieces) {
-        wider = draw_wider(scene, field, settings, made, ThinWalls{thin.thickness, thin.gap}, false,
-                           progress);
+        wider = draw_wider(scene, field, settings, made, ThinWalls{thin.thickness, thin.gap},
+                           Proof::Distances, progress);
     }
     if (progress.cancelled) made.failure = Failure::Cancelled;
     if (!progress.cancelled && wider && wider->certificate.near()) {

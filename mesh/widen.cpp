@@ -286,18 +286,19 @@ Doubt doubt_of(const Made &made, const Certificate &certificate) {
 
 std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
                                 const Settings &settings, const Made &made,
-                                std::span<const Cell> cells, bool certified, Progress &progress) {
+                                std::span<const Cell> cells, Proof proof, Progress &progress) {
     std::size_t crossed = 0;
     for (const Node &node : made.octree.nodes) crossed += node.children == none && node.crossed();
     if (cells.size() < few_cells || few_share * cells.size() < crossed) return std::nullopt;
     const ThinWalls walls = thin_walls_of(field, settings, made, cells, progress);
     if (!(walls.thickness > 0)) return std::nullopt;
-    return draw_wider(scene, field, settings, made, walls, certified, progress);
+    return draw_wider(scene, field, settings, made, walls, proof, progress);
 }
 
 std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
                                 const Settings &settings, const Made &made, const ThinWalls &walls,
-                                bool certified, Progress &progress) {
+                                Proof proof, Progress &progress) {
+    const bool certified = proof != Proof::Distances;
     std::optional<Wider> best;
     const double from = progress.from, to = progress.to;
     const auto affordable = [&](double times) {
@@ -331,14 +332,17 @@ std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
         std::optional<Made> wide = moved_to_surface(field, settings, made, walls, solid,
                                                     std::move(drawn), tangled, progress);
         if (progress.cancelled) break;
-        if (tangled && !certified) break; // smaller cells would take long in vain
+        if (tangled && proof != Proof::AllOfBest) break; // smaller cells would take long in vain
         if (!wide) continue;
         progress.phase(to);
         Wider wider{std::move(*wide), {}};
-        if (certified)
+        if (proof == Proof::AllOfBest) {
             wider.certificate = certify(field, settings, wider.made, nullptr, progress);
-        else if (!is_near(field, settings, wider.made, progress))
-            continue;
+        } else {
+            auto certificate = certify_if_near(field, settings, wider.made, progress);
+            if (!certificate) continue;
+            wider.certificate = std::move(*certificate);
+        }
         if (progress.cancelled) break;
         if (wider.certificate.near()) {
             bool same = (before ? before->form : form(draw(0.5 * times).second)) == here;

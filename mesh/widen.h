@@ -29,18 +29,24 @@ struct ThinWalls {
     bool gaps = false;    // it is gaps
 };
 
+// What is proved of such a mesh.
+enum class Proof {
+    Distances,   // that both are small enough, and nothing else; it is left out where they are not
+    Certificate, // all, where they are; else it is left out
+    AllOfBest,   // all of each mesh, also of those of which some is in doubt
+};
+
 // Where many cells are undecided, and most of what is in them are walls, or gaps, by samples: the mesh
-// that is drawn so, by cells that are up to four times smaller if need be; the first that is certified,
-// else the one with least in doubt. None: there are no such walls, or no such mesh was made.
-// `certified`: else all that matters is whether it would be, as far as both distances go; where it is
-// not, nothing more is known of it, and cells are at most half as large.
+// that is drawn so, by cells that are up to four times smaller if need be, by `Distances` at most two;
+// the first that is certified, else the one with least in doubt. None: there are no such walls, or no
+// such mesh was made.
 // Its shape is doubted where cells of half the side, or of twice the side, show other pieces and handles.
 std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
                                 const Settings &settings, const Made &made,
-                                std::span<const Cell> cells, bool certified, Progress &progress);
+                                std::span<const Cell> cells, Proof proof, Progress &progress);
 // The same where it is known what is thin.
 std::optional<Wider> draw_wider(const ir::Scene &scene, const Field &field,
                                 const Settings &settings, const Made &made, const ThinWalls &walls,
-                                bool certified, Progress &progress);
+                                Proof proof, Progress &progress);
 
 } // namespace fathom::mesh
