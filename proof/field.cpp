@@ -303,7 +303,9 @@ FieldBound search_bound(Flattening &context, const Ranges &ranges, const Tape &t
         return search_cells(context, ranges, tape, domain, budget);
     if (within_reach(domain.box).p ==
         domain.box.p) { // of a region: what else is wrong is told first
-        const FieldBound as_it_is = search_cells(context, ranges, tape, domain, budget);
+        Budget any = budget;
+        any.enough = std::numeric_limits<double>::max(); // it ends where each cell has a bound
+        const FieldBound as_it_is = search_cells(context, ranges, tape, domain, any);
         if (!std::isfinite(as_it_is.lipschitz)) return as_it_is;
     }
     Tape growing = tape;
