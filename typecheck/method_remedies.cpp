@@ -94,6 +94,38 @@ Fix constant_of_vector(const Interpreter &ev, std::string_view name, Span place)
             {{{place.source, place.begin, static_cast<std::uint32_t>(place.end + end)}, written}}};
 }
 
+Fix clock_of_unity(const Interpreter &ev, std::string_view name, Span place) {
+    struct Clock {
+        std::string_view name;
+        std::array<std::string_view, 4> parts; // x, y, z, w
+    };
+    constexpr std::array<Clock, 3> clocks = {
+        {{"_Time", {"(time / 20)", "time", "(2 * time)", "(3 * time)"}},
+         {"_SinTime", {"sin(time / 8)", "sin(time / 4)", "sin(time / 2)", "sin(time)"}},
+         {"_CosTime", {"cos(time / 8)", "cos(time / 4)", "cos(time / 2)", "cos(time)"}}}};
+    const auto clock = std::ranges::find(clocks, name, &Clock::name);
+    if (clock == clocks.end() || !place.source) return {};
+    constexpr std::size_t most_edits = 20;
+    const auto is_word = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+    };
+    const std::string_view all = ev.sources[place.source].text;
+    std::vector<Edit> edits; // of each use: a name is told once
+    for (std::size_t at = place.begin; at != all.npos && edits.size() < most_edits;
+         at = all.find(name, at + 1)) {
+        const std::size_t dot = at + name.size();
+        const std::size_t part =
+            dot + 1 < all.size() ? std::string_view("xyzw").find(all[dot + 1]) : all.npos;
+        if ((at > 0 && is_word(all[at - 1])) || part == all.npos || all[dot] != '.' ||
+            (dot + 2 < all.size() && is_word(all[dot + 2])))
+            continue;
+        edits.push_back(
+            {{place.source, static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(dot + 2)},
+             std::string(clock->parts[part])});
+    }
+    return {"the seconds are `time`", std::move(edits)};
+}
+
 bool is_foreign_method(Interpreter &ev, const Value &object, const File &ast,
                        const lang::Member &member, const lang::Call &call, Span place) {
     if (is_operator_method(ev, object, ast, member, call, place)) return true;

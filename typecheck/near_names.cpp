@@ -302,7 +302,8 @@ void report_unknown_name(Interpreter &ev, std::uint32_t frame, std::string_view 
                "library's shapes stand outside of it, as `sphere(r).translate(c)`");
         return;
     }
-    for (Fix fix : {part_of_point(ev, name, place), constant_of_vector(ev, name, place)})
+    for (Fix fix : {part_of_point(ev, name, place), constant_of_vector(ev, name, place),
+                    clock_of_unity(ev, name, place)})
         if (of_user && !d.fix && !fix.message.empty())
             d.help(std::move(fix.message), std::move(fix.edits));
     if (d.fix) return;

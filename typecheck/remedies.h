@@ -64,6 +64,8 @@ bool is_foreign_method(Interpreter &ev, const Value &object, const File &ast,
                        const lang::Member &member, const lang::Call &call, Span place);
 // For `Vector3.up`, `Vec3.ZERO` of engines; an empty message: it is not that.
 Fix constant_of_vector(const Interpreter &ev, std::string_view name, Span place);
+// `_Time.y` of Unity's shaders, `_SinTime.w`: by `time`, wherever the text has one.
+Fix clock_of_unity(const Interpreter &ev, std::string_view name, Span place);
 // For `l.push(x)` in a loop, `l.forEach(f)`, `l.sum()`: what does the same. Empty where that is not
 // plain.
 std::vector<Edit> edits_of_list_method(const Interpreter &ev, const File &ast,
