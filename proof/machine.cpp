@@ -325,10 +325,40 @@ void Machine::run_loop(const Instruction &instruction) {
 // A quotient whose sides may both be 0.
 bool Machine::is_0_by_0(const Instruction &instruction) const {
     if (instruction.op != Op::Div) return false;
-    const Slot above = instruction.args[0];
+    const Slot above = instruction.args[0], below = instruction.args[1];
     for (std::uint32_t i = 0; i < tape_.size[above]; ++i)
-        if (value_[tape_.first[above] + i].contains(0)) return true;
+        if (value_[tape_.first[above] + i].contains(0) &&
+            value_[tape_.first[below] + i].mignitude() < min_single)
+            return true;
     return false;
+}
+
+// What is infinite, as 1/0, and read by anything else than what keeps it: infinity less infinity, or
+// times 0, and a sine of it are no numbers.
+bool Machine::is_none_of_infinite(const Instruction &in) const {
+    using enum Op;
+    constexpr ir::OpSet keep{Neg,    Abs,    Min,        Max,   Union,     Intersection, Clamp,
+                             Exp,    Exp2,   Log,        Log2,  Sqrt,      InverseSqrt,  Atan,
+                             Sinh,   Cosh,   Tanh,       Floor, Ceil,      Round,        Trunc,
+                             Sign,   Step,   Smoothstep, Less,  LessEqual, Equal,        NotEqual,
+                             Select, Length, Make,       Splat, Swizzle,   Column,       Transpose};
+    const auto may_be = [&](Slot s, double end) {
+        for (std::uint32_t i = 0; i < tape_.size[s]; ++i)
+            if (const Interval &v = value_[tape_.first[s] + i]; v.lo == end || v.hi == end)
+                return true;
+        return false;
+    };
+    const auto infinite = [&](Slot s) {
+        return pole_[s] && (may_be(s, infinity) || may_be(s, -infinity));
+    };
+    if (keep[in.op] || std::ranges::none_of(in.args, infinite)) return false;
+    if (in.op != Add && in.op != Sub && in.op != Mul && in.op != Div) return true;
+    const Slot a = in.args[0], b = in.args[1];
+    if (in.op == Mul) return a != b; // the square of what is infinite is so, too
+    if (!infinite(a) || !infinite(b)) return false;
+    const double other = in.op == Add ? -infinity : infinity;
+    return in.op == Div || (may_be(a, infinity) && may_be(b, other)) ||
+           (may_be(a, -infinity) && may_be(b, -other));
 }
 
 void Machine::fail(const Instruction &instruction, Trouble why) {
@@ -343,13 +373,15 @@ void Machine::fail(const Instruction &instruction, Trouble why) {
     trouble_[s] = why;
     cause_[s] = instruction.node;
     pole_[s] = why == Trouble::Singular && poles[instruction.op];
-    undefined_[s] = pole_[s] && is_0_by_0(instruction);
-    for (Slot a : instruction.args) undefined_[s] = undefined_[s] | undefined_[a];
+    undefined_[s] = (pole_[s] && is_0_by_0(instruction)) || is_none_of_infinite(instruction);
+    for (Slot a : instruction.args) {
+        undefined_[s] = undefined_[s] | undefined_[a];
+        pole_[s] = pole_[s] | pole_[a];
+    }
     for (Slot a : instruction.args) // what fed it was in trouble before
         if (trouble_[a] != Trouble::None) {
             trouble_[s] = trouble_[a];
             cause_[s] = cause_[a];
-            pole_[s] = pole_[s] || pole_[a];
             return;
         }
     if (why == Trouble::Jump)
@@ -392,7 +424,7 @@ void Machine::finish(const Instruction &instruction, double rule, bool odd_used)
     trouble_[s] = Trouble::None;
     cause_[s] = NodeId();
     pole_[s] = 0;
-    undefined_[s] = 0;
+    undefined_[s] = is_none_of_infinite(instruction);
     for (Slot a : instruction.args) undefined_[s] = undefined_[s] | undefined_[a];
     const double relative = relative_[s]; // may be known though the slope has no bound
     if (norm_[s] == infinity) fail(instruction, Trouble::Singular), relative_[s] = relative;

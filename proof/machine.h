@@ -188,6 +188,7 @@ class Machine {
     void hold_majorant(const Instruction &instruction);
     void fail(const Instruction &instruction, Trouble why);
     bool is_0_by_0(const Instruction &instruction) const;
+    bool is_none_of_infinite(const Instruction &instruction) const;
     void copy(Slot from, Slot to);
     void join(Slot into, Slot other, bool jump, NodeId cause);
     Interval box_length(Slot s) const;
@@ -264,7 +265,7 @@ class Machine {
     std::vector<Trouble> trouble_;
     std::vector<NodeId> cause_;
     std::vector<std::uint8_t> pole_;      // by slot: singular as it may be no number at all
-    std::vector<std::uint8_t> undefined_; // by slot: 0/0 may be in it, whatever its slope is
+    std::vector<std::uint8_t> undefined_; // by slot: it may be no number, whatever its slope is
     double result_norm_ = 0;
     std::size_t work_ = 0;
     Ways *ways_ = nullptr;              // in a run by ways
