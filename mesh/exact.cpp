@@ -101,8 +101,20 @@ std::size_t best_axis(const std::array<Point, 3> &t) {
     return best;
 }
 
+// Whether all of a way lies beyond all of a triangle along one of the axes.
+bool beyond(const Point &p, const Point &q, const std::array<Point, 3> &t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto [lo, hi] = std::minmax(p[i], q[i]);
+        if (lo > std::max({t[0][i], t[1][i], t[2][i]}) ||
+            hi < std::min({t[0][i], t[1][i], t[2][i]}))
+            return true;
+    }
+    return false;
+}
+
 // About where a way meets a triangle, ends and borders included.
 std::optional<Point> meeting_of(const Point &p, const Point &q, const std::array<Point, 3> &t) {
+    if (beyond(p, q, t)) return std::nullopt; // as the signs below would say, at more cost
     const int from = side_of(t[0], t[1], t[2], p), to = side_of(t[0], t[1], t[2], q);
     if (from * to > 0) return std::nullopt;
     if (from == 0 && to == 0) {

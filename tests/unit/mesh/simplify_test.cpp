@@ -143,4 +143,10 @@ TEST_CASE("triangles cross, or share a vertex or an edge alone") {
     CHECK(cross({0, 1, 2}, {0, 6, 1}));       // in one plane, an edge, folded
     CHECK_FALSE(cross({0, 1, 2}, {1, 0, 8})); // in one plane, an edge alone
     CHECK(cross({0, 1, 2}, {6, 9, 5}));       // in one plane, in part
+    CHECK(cross({0, 1, 2}, {0, 7, 6}));       // in one plane, over a vertex in common
+    // Boxes that touch in one plane: a vertex on a side, and beside it by the last place.
+    const std::vector<mesh::Point> q{{0, 0, 0},  {4, 0, 0},   {0, 4, 0},      {0, 2, 0},
+                                     {-1, 2, 1}, {-1, 2, -1}, {-1e-45f, 2, 0}};
+    CHECK(mesh::crossing_of(q, {0, 1, 2}, {3, 4, 5}));
+    CHECK_FALSE(mesh::crossing_of(q, {0, 1, 2}, {6, 4, 5}));
 }
