@@ -400,6 +400,7 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
                    Proof::AllOfBest, progress);
     const auto take_wide = [&] {
         mended.made = std::move(wide->made), mended.certificate = std::move(wide->certificate);
+        wide.reset(); // it is taken once
     };
     if (progress.cancelled) mended.made.failure = Failure::Cancelled;
     if (progress.cancelled || (unseen && !wide)) return mended;
@@ -436,11 +437,12 @@ Mended make_certified_mesh(const ir::Scene &scene, Settings settings) {
             gains(last, mended.certificate, mended.made.octree.lattice, choice.hopeless);
         if (!gained && !may_wait) break;
     }
+    const bool was_wider = wide.has_value();
     if (wide && !mended.certificate.near() &&
         doubt_of(wide->made, wide->certificate) < doubt_of(mended.made, mended.certificate))
         take_wide();
     if (!progress.cancelled)
-        settle_shape(scene, field, settings, wide.has_value(), most, mended, progress);
+        settle_shape(scene, field, settings, was_wider, most, mended, progress);
     if (mended.certificate.shape.doubted && wide && wide->certificate.near()) take_wide();
     if (progress.cancelled) mended.made.failure = Failure::Cancelled;
     return mended;

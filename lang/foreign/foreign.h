@@ -219,6 +219,8 @@ class ForeignSyntax : protected TokenReading {
     void module_head(Index first, Index after, std::string &head) const;
     bool foreign_minkowski(Index first);
     bool foreign_hull(Index first);
+    bool hull_of_loops(Index first, Index begin);
+    std::vector<std::pair<std::string, std::string>> named_arguments(Index open) const;
     std::string radius_of(Index shape) const;
     bool foreign_modifier(Index at);
     void forget_arguments(Index open) const;

@@ -312,53 +312,6 @@ bool ForeignSyntax::foreign_minkowski(Index first) {
     return true;
 }
 
-// `hull() { sphere(1); translate([3, 0, 0]) sphere(1); }`: two balls of one radius are a capsule.
-bool ForeignSyntax::foreign_hull(Index first) {
-    const Index open = match(first + 1) + 1, close = match(open);
-    if (text(first) != "hull" || kind(first + 1) != Tok::Open || close <= open ||
-        may_be_declared(text(first)))
-        return false;
-    std::vector<std::string> centers, radii;
-    const auto vector_at = [&](Index at) { // in parentheses
-        const Index list = at + 1;
-        return is_one_of(kind(list), {Tok::ListOpen, Tok::FreshListOpen}) &&
-                       match(list) + 1 == match(at)
-                   ? value_text(list, match(at))
-                   : std::string();
-    };
-    for (Index i = open + 1; i < close; ++i) {
-        if (kind(i) == Tok::End) continue;
-        std::string center = "[0, 0, 0]";
-        if (text(i) == "translate" && kind(i + 1) == Tok::Open && match(i + 1) > i + 1) {
-            center = vector_at(i + 1);
-            i = match(i + 1) + 1;
-        }
-        if (text(i) != "sphere" || kind(i + 1) != Tok::Open || match(i + 1) <= i + 1) return false;
-        radii.push_back(radius_of(i));
-        i = match(i + 1) + 1;
-        if (kind(i) == Tok::Dot && text(i + 1) == "translate" && kind(i + 2) == Tok::Open) {
-            center = vector_at(i + 2);
-            i = match(i + 2) + 1;
-        }
-        if (center.empty() || radii.back().empty() || !ends_statement(i)) return false;
-        centers.push_back(std::move(center));
-    }
-    if (radii.size() != 2) return false;
-    for (Index i = open; i < close; ++i)
-        if (kind(i) == Tok::Open) forget_arguments(i);
-    failed_ = close;
-    Diagnostic &d = foreign(span(first), "there is no convex hull");
-    const std::string written = "capsule(" + centers[0] + ", " + centers[1] + ", " + radii[0] + ")";
-    if (radii[0] == radii[1])
-        d.help("of two balls it is a capsule: write " + in_code(written),
-               {{span(first, close), written}});
-    else
-        d.help("of two balls of different size it is a cone with round ends, `round_cone(bottom: " +
-               brief(radii[0]) + ", top: " + brief(radii[1]) +
-               ", height: …)`, the centres so far apart along y, turned by `.orient`");
-    return true;
-}
-
 // `*cube(1);` and `%cube(1);`, which OpenSCAD leaves out of the model; `!cube(1);`, which it draws
 // alone.
 bool ForeignSyntax::foreign_modifier(Index at) {

@@ -32,6 +32,7 @@ TEST_CASE("meshes of solids with flush faces and thin walls are what their certi
         CHECK(mended.made.failure == mesh::Failure::None);
         if (mended.made.failure != mesh::Failure::None) continue;
         ++made_meshes;
+        CHECK_FALSE(mended.made.mesh.triangles.empty());
         test::judged(mended.made.mesh);
         const mesh::Certificate &certificate = mended.certificate;
         near += certificate.near();

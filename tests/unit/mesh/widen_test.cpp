@@ -84,6 +84,19 @@ TEST_CASE("closed shells and gaps far thinner than cells are drawn whole, and ce
     }
 }
 
+TEST_CASE("a wider mesh whose shape is in doubt is whole") {
+    const mesh::Mended mended = make_certified_mesh(
+        thin_scene("let wall = box(0.5625) - box(0.548)\n"
+                   "(wall | wall.translate(x: 0.5)).rotate(1.36, axis: [1, 2, 3])"),
+        wide_cells(15));
+    REQUIRE(mended.made.failure == mesh::Failure::None);
+    CHECK(mended.made.widened != 0);
+    CHECK(mended.certificate.shape.doubted);
+    REQUIRE(!mended.made.mesh.triangles.empty());
+    CHECK(!mended.made.octree.nodes.empty());
+    check_whole(mended.made.mesh);
+}
+
 TEST_CASE("a plate that no corner of the finest cells shows is drawn") {
     const ir::Scene scene = thin_scene("box([2, 2, 0.0003])");
     CHECK(make_plain_mesh(scene, wide_cells(12)).failure == mesh::Failure::Unseen);
