@@ -337,11 +337,11 @@ bool Machine::is_0_by_0(const Instruction &instruction) const {
 // times 0, and a sine of it are no numbers.
 bool Machine::is_none_of_infinite(const Instruction &in) const {
     using enum Op;
-    constexpr ir::OpSet keep{Neg,    Abs,    Min,        Max,   Union,     Intersection, Clamp,
-                             Exp,    Exp2,   Log,        Log2,  Sqrt,      InverseSqrt,  Atan,
-                             Sinh,   Cosh,   Tanh,       Floor, Ceil,      Round,        Trunc,
-                             Sign,   Step,   Smoothstep, Less,  LessEqual, Equal,        NotEqual,
-                             Select, Length, Make,       Splat, Swizzle,   Column,       Transpose};
+    constexpr ir::OpSet keep{Neg,    Abs,  Min,   Max,       Union,  Intersection, Clamp,
+                             Exp,    Exp2, Log,   Log2,      Sqrt,   InverseSqrt,  Atan,
+                             Sinh,   Cosh, Tanh,  Floor,     Ceil,   Round,        Trunc,
+                             Sign,   Step, Less,  LessEqual, Equal,  NotEqual,     Select,
+                             Length, Make, Splat, Swizzle,   Column, Transpose};
     const auto may_be = [&](Slot s, double end) {
         for (std::uint32_t i = 0; i < tape_.size[s]; ++i)
             if (const Interval &v = value_[tape_.first[s] + i]; v.lo == end || v.hi == end)
@@ -352,6 +352,7 @@ bool Machine::is_none_of_infinite(const Instruction &in) const {
         return pole_[s] && (may_be(s, infinity) || may_be(s, -infinity));
     };
     if (keep[in.op] || std::ranges::none_of(in.args, infinite)) return false;
+    if (in.op == Smoothstep) return infinite(in.args[0]) || infinite(in.args[1]); // its edges
     if (in.op != Add && in.op != Sub && in.op != Mul && in.op != Div) return true;
     const Slot a = in.args[0], b = in.args[1];
     if (in.op == Mul) return a != b; // the square of what is infinite is so, too
